@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/error.hpp"
+#include "geometry/shape.hpp"
+
+namespace riven {
+
+/// What an expression of a case file may depend on; SI units.
+struct Variables {
+  Point position{};      // x, y, z (m)
+  double t = 0;          // s
+  double stretch = 1;
+};
+
+/// A function of x, y, z, t and stretch that the user wrote; already in SI units. Copies are cheap and share
+/// the compiled formula; evaluate one expression from one thread at a time.
+class Expression {
+ public:
+  Expression() = default;
+  /// `formula`: in SI units and muParser's language. Throws InputError at `at` when it does not parse.
+  Expression(std::string written, std::string formula, const Location& at);
+
+  double operator()(const Variables& variables) const;
+
+  [[nodiscard]] const std::string& written() const;   // as the user wrote it
+  [[nodiscard]] bool depends_on(const std::string& variable) const;
+  [[nodiscard]] const Location& location() const;
+
+ private:
+  struct Compiled;
+  std::shared_ptr<Compiled> compiled_;
+};
+
+}  // namespace riven
