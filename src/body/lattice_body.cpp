@@ -233,13 +233,17 @@ class BondMaker {
 
 }  // namespace
 
+std::span<const InterfaceBond> LatticeBody::interface_of(std::size_t point) const {
+  const auto [first, last] =
+      std::equal_range(interface.begin(), interface.end(), InterfaceBond{point, 0, 0, {}},
+                       [](const InterfaceBond& a, const InterfaceBond& b) { return a.point < b.point; });
+  return {first, last};
+}
+
 std::size_t LatticeBody::family_size(std::size_t point) const {
-  std::size_t bonds_here = 0;
-  for (std::size_t k = 0; k < stencil.size(); ++k) bonds_here += bonds.exists(k, point) ? 1 : 0;
-  const auto [first, last] = std::equal_range(
-      interface.begin(), interface.end(), InterfaceBond{point, 0, 0, {}},
-      [](const InterfaceBond& a, const InterfaceBond& b) { return a.point < b.point; });
-  return bonds_here + static_cast<std::size_t>(last - first);
+  std::size_t size = interface_of(point).size();
+  for (std::size_t k = 0; k < stencil.size(); ++k) size += bonds.exists(k, point) ? 1 : 0;
+  return size;
 }
 
 LatticeBody make_lattice_body(const LatticeBodyInput& input) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <bitset>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "body/bond_planes.hpp"
@@ -67,6 +68,8 @@ struct LatticeBody {
   std::vector<InterfaceBond> interface;    // sorted by point, then offset
   std::vector<std::vector<std::size_t>> rigid_points;  // of each inclusion
 
+  /// Bonds of a point that end on inclusions.
+  [[nodiscard]] std::span<const InterfaceBond> interface_of(std::size_t point) const;
   /// Bonds of a point, those to inclusions included.
   [[nodiscard]] std::size_t family_size(std::size_t point) const;
 };

@@ -19,23 +19,21 @@ double offset(const Constraint& constraint, double parameter) {
 void Constraints::add(Constraint constraint) {
   free_[constraint.slave] = false;
   (constraint.master == Constraint::kNone ? prescribed_ : mirrored_).push_back(std::move(constraint));
-  for (Values* values : {&now_, &before_}) {
-    values->offset.assign(prescribed_.size() + mirrored_.size(), 0.0);
-    values->force = values->offset;
-  }
+  offset_.push_back(0.0);
+  external_.push_back(0.0);
 }
 
 void Constraints::set_parameter(double parameter) {
   std::size_t n = 0;
   for (const auto* list : {&prescribed_, &mirrored_})
-    for (const Constraint& constraint : *list) now_.offset[n++] = offset(constraint, parameter);
+    for (const Constraint& constraint : *list) offset_[n++] = offset(constraint, parameter);
 }
 
 void Constraints::apply(std::span<double> u) const {
   std::size_t n = 0;
-  for (const Constraint& constraint : prescribed_) u[constraint.slave] = now_.offset[n++];
+  for (const Constraint& constraint : prescribed_) u[constraint.slave] = offset_[n++];
   for (const Constraint& constraint : mirrored_)
-    u[constraint.slave] = constraint.sign * u[constraint.master] + now_.offset[n++];
+    u[constraint.slave] = constraint.sign * u[constraint.master] + offset_[n++];
 }
 
 void Constraints::reduce(std::span<double> force) {
@@ -43,7 +41,7 @@ void Constraints::reduce(std::span<double> force) {
   double square = 0;
   const auto take = [&](const Constraint& constraint, std::size_t n) {
     const double external = -force[constraint.slave];
-    now_.force[n] = external;
+    external_[n] = external;
     square += external * external;
     for (const PrescribedTerm& term : constraint.terms)
       reaction_[term.load][static_cast<std::size_t>(term.axis)] += term.factor * external;
@@ -63,14 +61,6 @@ void Constraints::fold(std::span<double> bound) const {
     bound[constraint.slave] = 0;
   }
   for (const Constraint& constraint : prescribed_) bound[constraint.slave] = 0;
-}
-
-double Constraints::work_since_last_call() {
-  double work = 0;
-  for (std::size_t n = 0; n < now_.offset.size(); ++n)
-    work += 0.5 * (now_.force[n] + before_.force[n]) * (now_.offset[n] - before_.offset[n]);
-  before_ = now_;
-  return work;
 }
 
 AffineIncrement Constraints::affine_increment(double from, double to) const {

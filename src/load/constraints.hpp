@@ -65,8 +65,10 @@ class Constraints {
   /// L2 norm of the constraint forces of the last `reduce` (N).
   [[nodiscard]] double reaction_norm() const { return reaction_norm_; }
 
-  /// Work (J) done on the body since the last call, by the trapezoidal rule over parameter and force.
-  double work_since_last_call();
+  /// Prescribed part of every constraint (m) and the external force on its slave (N), in one order: the work of the
+  /// loads is the integral of force over offset.
+  [[nodiscard]] std::span<const double> offsets() const { return offset_; }
+  [[nodiscard]] std::span<const double> forces() const { return external_; }
 
   [[nodiscard]] AffineIncrement affine_increment(double from, double to) const;
 
@@ -74,11 +76,7 @@ class Constraints {
   std::vector<Constraint> prescribed_;   // without master: applied first, reduced last
   std::vector<Constraint> mirrored_;
   std::vector<bool> free_;
-  struct Values {
-    std::vector<double> offset;          // of prescribed_, then mirrored_
-    std::vector<double> force;           // external force on the slave
-  };
-  Values now_, before_;
+  std::vector<double> offset_, external_;  // of prescribed_, then mirrored_
   std::vector<Point> reaction_;
   double reaction_norm_ = 0;
 };

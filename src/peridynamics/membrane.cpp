@@ -18,17 +18,11 @@ constexpr double kCutFamilyStabilisation = 0.1;
 
 Eigen::Vector2d plane(const Point& p) { return {p[0], p[1]}; }
 
-Eigen::Vector2d rotated(const Eigen::Vector2d& v, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
-}
-
 }  // namespace
 
 Membrane::Membrane(LatticeBody body, Material material, double stabilisation)
     : body_(std::move(body)), material_(std::move(material)), stabilisation_(stabilisation) {
   if (body_.lattice.dimension() != 2) throw InputError("a membrane is two-dimensional: give the box two sizes and a thickness");
-  spacing_ = body_.lattice.spacing();
   const std::size_t n = body_.lattice.size();
   for (auto* plane : {&kappa_, &mean_s2_, &mean_s4_, &energy_density_, &force_a_, &force_b_}) plane->assign(n, 0.0);
   for (auto& plane : coefficient_) plane.assign(n, 0.0);
@@ -73,24 +67,22 @@ std::vector<MembraneBond> Membrane::bonds_of(std::size_t point) const {
   for (std::size_t k = 0; k < stencil_.size(); ++k)
     if (body_.bonds.exists(k, point))
       bonds.push_back({{stencil_[k].x, stencil_[k].y}, 0, BondPlanes::neighbour(body_.stencil, k, point), -1, {0, 0}});
-  const auto first = std::lower_bound(body_.interface.begin(), body_.interface.end(), point,
-                                      [](const InterfaceBond& bond, std::size_t p) { return bond.point < p; });
   const Eigen::Vector2d x = plane(body_.lattice.position(point));
-  for (auto bond = first; bond != body_.interface.end() && bond->point == point; ++bond) {
-    const Eigen::Vector2d end = plane(bond->end);
-    bonds.push_back({end - x, 0, 0, static_cast<int>(bond->inclusion), end - inclusions_[bond->inclusion].center});
+  for (const InterfaceBond& bond : body_.interface_of(point)) {
+    const Eigen::Vector2d end = plane(bond.end);
+    bonds.push_back({end - x, 0, 0, static_cast<int>(bond.inclusion), end - inclusions_[bond.inclusion].center});
   }
   return bonds;
 }
 
 /// Directions of a family at the lattice's own lengths: a bond to an inclusion keeps the weight that it had before it
-/// was shortened (theory 5a, rule 4).
-static std::vector<PlaneBond> unshortened(const LatticeBody& body, std::size_t point) {
+/// was shortened (theory 5a, rule 4). The order is that of `bonds_of`.
+std::vector<PlaneBond> Membrane::unshortened_bonds_of(std::size_t point) const {
   std::vector<PlaneBond> bonds;
-  for (std::size_t k = 0; k < body.stencil.size(); ++k)
-    if (body.bonds.exists(k, point)) bonds.push_back({body.stencil.bond[k][0], body.stencil.bond[k][1]});
-  for (const InterfaceBond& bond : body.interface)
-    if (bond.point == point) bonds.push_back({body.stencil.bond[bond.offset][0], body.stencil.bond[bond.offset][1]});
+  for (std::size_t k = 0; k < stencil_.size(); ++k)
+    if (body_.bonds.exists(k, point)) bonds.push_back({stencil_[k].x, stencil_[k].y});
+  for (const InterfaceBond& bond : body_.interface_of(point))
+    bonds.push_back({stencil_[bond.offset].x, stencil_[bond.offset].y});
   return bonds;
 }
 
@@ -100,17 +92,16 @@ double Membrane::stabilisation_modulus(std::size_t point) const {
 }
 
 void Membrane::make_families() {
-  std::vector<bool> at_interface(body_.lattice.size(), false);
-  for (const InterfaceBond& bond : body_.interface) at_interface[bond.point] = true;
   FamilyWeights whole;  // most points have the whole stencil: solve for it once
   for (const std::size_t i : body_.points) {
     kappa_[i] = stabilisation_modulus(i);
     const std::size_t size = body_.family_size(i);
     directed_bonds_ += size;
-    const bool is_whole = size == body_.stencil.size() && !at_interface[i];
-    FamilyWeights weights = is_whole && !whole.weight.empty() ? whole : moment_corrected_weights(unshortened(body_, i));
+    const bool at_interface = !body_.interface_of(i).empty();
+    const bool is_whole = size == body_.stencil.size() && !at_interface;
+    FamilyWeights weights = is_whole && !whole.weight.empty() ? whole : moment_corrected_weights(unshortened_bonds_of(i));
     if (is_whole && whole.weight.empty()) whole = weights;
-    if (weights.kind == FamilyWeights::Kind::smooth && !at_interface[i]) {
+    if (weights.kind == FamilyWeights::Kind::smooth && !at_interface) {
       for (std::size_t m = 0; m < kMoments; ++m) coefficient_[m][i] = weights.coefficients[m];
       continue;
     }
@@ -130,26 +121,18 @@ void Membrane::make_families() {
   }
 }
 
-std::vector<MembraneBond> Membrane::family(std::size_t point) const {
-  if (listed_index_[point] >= 0) return listed_[static_cast<std::size_t>(listed_index_[point])].bonds;
-  std::vector<MembraneBond> bonds;
-  for (std::size_t k = 0; k < stencil_.size(); ++k) {
-    if (!body_.bonds.exists(k, point)) continue;
-    double weight = 0;
-    for (std::size_t m = 0; m < kMoments; ++m) weight += coefficient_[m][point] * stencil_[k].weight[m];
-    bonds.push_back({{stencil_[k].x, stencil_[k].y}, weight, BondPlanes::neighbour(body_.stencil, k, point), -1, {0, 0}});
-  }
-  return bonds;
-}
-
 Eigen::Vector2d Membrane::deformed(std::size_t point, const MembraneBond& bond, std::span<const double> u) const {
   const std::size_t n = body_.lattice.size();
   const Eigen::Vector2d here(u[point], u[n + point]);
   if (bond.inclusion < 0) return bond.reference + Eigen::Vector2d(u[bond.neighbour], u[n + bond.neighbour]) - here;
   const auto inclusion = static_cast<std::size_t>(bond.inclusion);
   const std::size_t dof = inclusion_dof(inclusion);
-  const double angle = u[dof + 2] / inclusions_[inclusion].gyration;
-  return bond.reference + Eigen::Vector2d(u[dof], u[dof + 1]) + rotated(bond.arm, angle) - bond.arm - here;
+  return bond.reference + Eigen::Vector2d(u[dof], u[dof + 1]) + inclusions_[inclusion].rotation * bond.arm - bond.arm - here;
+}
+
+Eigen::Vector2d Membrane::bond_force(const PointForce& law, const MembraneBond& bond, const Eigen::Vector2d& y) {
+  const double inverse2 = 1 / bond.reference.squaredNorm();
+  return bond.weight * inverse2 * ((law.a + law.b * y.squaredNorm() * inverse2) * y + law.n * bond.reference);
 }
 
 std::size_t Membrane::dofs() const { return 2 * body_.lattice.size() + 3 * inclusions_.size(); }
@@ -219,94 +202,90 @@ std::vector<ModelField> Membrane::fields(std::span<const double> u) {
     energy.values.push_back(energy_density_[i]);
     const PointForce law = point_force(i);
     Eigen::Matrix2d p = Eigen::Matrix2d::Zero();
-    for (const MembraneBond& bond : family(i)) {
-      const Eigen::Vector2d y = deformed(i, bond, u);
-      const double inverse2 = 1 / bond.reference.squaredNorm();
-      p += bond.weight * inverse2 *
-           ((law.a + law.b * y.squaredNorm() * inverse2) * y + law.n * bond.reference) * bond.reference.transpose();
-    }
+    for_each_bond(i, [&](const MembraneBond& bond) {
+      p += bond_force(law, bond, deformed(i, bond, u)) * bond.reference.transpose();
+    });
     p /= body_.volume[i];
     stress.values.insert(stress.values.end(), {p(0, 0), p(0, 1), 0, p(1, 0), p(1, 1), 0, 0, 0, 0});
   }
   return {displacement, damage, energy, stress};
 }
 
-/// Bounds the tangent of one point's energy bond by bond. `per_bond` gets a bound for the rows of each far end; returned is
-/// the bound for the point's own rows. The family term is written in (a, b - 2 a0 a), a0 the present a: in a homogeneous
-/// state its second part vanishes, where a and b alone would cancel to nothing from large numbers.
-double Membrane::bond_stiffness_sum(std::size_t point, std::span<const double> u, std::vector<double>& per_bond) const {
-  const std::vector<MembraneBond> bonds = family(point);
-  const PointForce law = point_force(point);
-  const double a = mean_s2_[point], b = mean_s4_[point], v = body_.volume[point];
-  const bool by_gradient =
-      listed_index_[point] >= 0 && listed_[static_cast<std::size_t>(listed_index_[point])].by_gradient;
-
-  struct FamilyTerm {
-    Eigen::Vector2d sum{0, 0};
-    double norms = 0;
-    void add(const Eigen::Vector2d& g) {
-      sum += g;
-      norms += g.norm();
-    }
-    [[nodiscard]] double total() const { return norms + sum.norm(); }
-  };
-  FamilyTerm first, second;
-  std::vector<std::array<double, 2>> norm;
-  double own = 0;
-  per_bond.clear();
-  for (const MembraneBond& bond : bonds) {
-    const Eigen::Vector2d y = deformed(point, bond, u);
-    const double inverse2 = 1 / bond.reference.squaredNorm();
-    const double s2 = y.squaredNorm() * inverse2;
-    const double block = bond.weight * inverse2 * (std::abs(law.a + law.b * s2) + 2 * std::abs(law.b) * s2);
-    per_bond.push_back(2 * block);
-    own += 2 * block;
-    const Eigen::Vector2d ga = 2 * bond.weight * inverse2 * y;
-    const Eigen::Vector2d gb = 2 * (s2 - a) * ga;
-    first.add(ga);
-    second.add(gb);
-    norm.push_back({ga.norm(), gb.norm()});
-  }
-  double waa = 0, wab = 0, wbb = 0;
-  if (by_gradient) {
+/// Bounds of the second derivatives of a point's energy in its family sums, over the volume: by (a, b - 2 a0 a), a0 the
+/// present a. In a homogeneous state the second of these does not move, while in a and b alone large numbers would cancel.
+std::array<double, 3> Membrane::family_curvature(std::size_t point) const {
+  const double a = mean_s2_[point], b = mean_s4_[point];
+  if (listed_index_[point] >= 0 && listed_[static_cast<std::size_t>(listed_index_[point])].by_gradient) {
     // The energy is a function of F; its tangent is bounded through the stretches of the same family.
-    Eigen::Matrix2d f;
-    f << mean_gradient_[0][point], mean_gradient_[1][point], mean_gradient_[2][point], mean_gradient_[3][point];
-    waa = material_.plane_stress(2 * f).tangent.norm() / a;
-  } else {
-    const FamilyEnergy e = std::visit([&](const auto& w) { return family_energy(w, a, b); }, material_.law);
-    waa = std::abs(e.waa + 4 * a * e.wab + 4 * a * a * e.wbb);
-    wab = std::abs(e.wab + 2 * a * e.wbb);
-    wbb = std::abs(e.wbb);
+    Eigen::Matrix2d half_f;
+    half_f << mean_gradient_[0][point], mean_gradient_[1][point], mean_gradient_[2][point], mean_gradient_[3][point];
+    return {material_.plane_stress(2 * half_f).tangent.norm() / a, 0, 0};
   }
-  const double per_first = v * (waa * first.total() + wab * second.total());
-  const double per_second = v * (wab * first.total() + wbb * second.total());
-  for (std::size_t j = 0; j < bonds.size(); ++j) per_bond[j] += per_first * norm[j][0] + per_second * norm[j][1];
-  return own + per_first * first.sum.norm() + per_second * second.sum.norm();
+  const FamilyEnergy e = std::visit([&](const auto& law) { return family_energy(law, a, b); }, material_.law);
+  return {std::abs(e.waa + 4 * a * e.wab + 4 * a * a * e.wbb), std::abs(e.wab + 2 * a * e.wbb), std::abs(e.wbb)};
 }
+
+namespace {
+
+/// Length of the sum and sum of the lengths of a family's vectors: bounds rows of the outer product of the sums.
+struct FamilySum {
+  Eigen::Vector2d sum{0, 0};
+  double lengths = 0;
+
+  void add(const Eigen::Vector2d& g) {
+    sum += g;
+    lengths += g.norm();
+  }
+  [[nodiscard]] double row() const { return lengths + sum.norm(); }
+};
+
+}  // namespace
 
 void Membrane::stiffness_bound(std::span<const double> u, std::span<double> bound) {
   update_points(u);
   std::fill(bound.begin(), bound.end(), 0.0);
-  const std::size_t n = body_.lattice.size();
-  std::vector<double> per_bond;
+  struct BondBound {
+    const MembraneBond bond;
+    double block, first, second;  // N/m; lengths of the gradients of the family sums (1/m)
+  };
+  std::vector<BondBound> family;
   for (const std::size_t i : body_.points) {
-    bound[i] += bond_stiffness_sum(i, u, per_bond);
-    const std::vector<MembraneBond> bonds = family(i);
-    for (std::size_t j = 0; j < bonds.size(); ++j) {
-      if (bonds[j].inclusion < 0) {
-        bound[bonds[j].neighbour] += per_bond[j];
-        continue;
-      }
-      const auto inclusion = static_cast<std::size_t>(bonds[j].inclusion);
-      const std::size_t dof = inclusion_dof(inclusion);
-      bound[dof] += per_bond[j];
-      bound[dof + 1] += per_bond[j];
-      const double lever = bonds[j].arm.norm() / inclusions_[inclusion].gyration;
-      bound[dof + 2] += per_bond[j] * std::max(lever, lever * lever);
+    const PointForce law = point_force(i);
+    FamilySum first, second;
+    family.clear();
+    for_each_bond(i, [&](const MembraneBond& bond) {
+      const Eigen::Vector2d y = deformed(i, bond, u);
+      const double inverse2 = 1 / bond.reference.squaredNorm(), s2 = y.squaredNorm() * inverse2;
+      const double block = bond.weight * inverse2 * (std::abs(law.a + law.b * s2) + 2 * std::abs(law.b) * s2);
+      const Eigen::Vector2d ga = 2 * bond.weight * inverse2 * y, gb = 2 * (s2 - mean_s2_[i]) * ga;
+      first.add(ga);
+      second.add(gb);
+      family.push_back({bond, block, ga.norm(), gb.norm()});
+    });
+    const auto [waa, wab, wbb] = family_curvature(i);
+    const double per_first = body_.volume[i] * (waa * first.row() + wab * second.row());
+    const double per_second = body_.volume[i] * (wab * first.row() + wbb * second.row());
+    bound[i] += per_first * first.sum.norm() + per_second * second.sum.norm();
+    for (const BondBound& b : family) {
+      bound[i] += 2 * b.block;
+      add_far_bound(b.bond, 2 * b.block + per_first * b.first + per_second * b.second, bound);
     }
   }
-  for (std::size_t i = 0; i < n; ++i) bound[n + i] = bound[i];
+  for (std::size_t i = 0; i < body_.lattice.size(); ++i) bound[body_.lattice.size() + i] = bound[i];
+}
+
+/// Adds to the row bound of a bond's far end.
+void Membrane::add_far_bound(const MembraneBond& bond, double row, std::span<double> bound) const {
+  if (bond.inclusion < 0) {
+    bound[bond.neighbour] += row;
+    return;
+  }
+  const auto inclusion = static_cast<std::size_t>(bond.inclusion);
+  const std::size_t dof = inclusion_dof(inclusion);
+  const double lever = bond.arm.norm() / inclusions_[inclusion].gyration;
+  bound[dof] += row;
+  bound[dof + 1] += row;
+  bound[dof + 2] += row * std::max(lever, lever * lever);
 }
 
 }  // namespace riven

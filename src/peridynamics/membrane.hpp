@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <vector>
 
@@ -57,10 +58,9 @@ class Membrane final : public Model {
   /// First of the three entries of an inclusion in a state.
   [[nodiscard]] std::size_t inclusion_dof(std::size_t inclusion) const;
 
-  /// The family of a body point, one bond at a time, whatever kind of point it is.
-  [[nodiscard]] std::vector<MembraneBond> family(std::size_t point) const;
-  /// Deformed bond from a body point (m).
-  [[nodiscard]] Eigen::Vector2d deformed(std::size_t point, const MembraneBond& bond, std::span<const double> u) const;
+  /// Calls visit(bond) for the family of a body point, whatever kind of point it is: the plain counterpart of the kernels.
+  template <class Visit>
+  void for_each_bond(std::size_t point, const Visit& visit) const;
 
   /// Points whose weights were found by least squares, and those that use the deformation gradient.
   [[nodiscard]] std::size_t points_by_least_squares() const;
@@ -78,11 +78,17 @@ class Membrane final : public Model {
     Eigen::Vector2d center;
     double gyration = 0;  // radius of gyration (m)
     double mass = 0;      // kg
+    Eigen::Rotation2Dd rotation{0};  // of the state seen last
   };
 
+  /// Deformed bond from a body point (m).
+  [[nodiscard]] Eigen::Vector2d deformed(std::size_t point, const MembraneBond& bond, std::span<const double> u) const;
+  /// The part of a bond's force that belongs to one end: weight/|xi|^2 ((a + b s^2) Y + n xi) (N).
+  static Eigen::Vector2d bond_force(const PointForce& law, const MembraneBond& bond, const Eigen::Vector2d& y);
   void make_inclusions();
   void make_families();
   [[nodiscard]] std::vector<MembraneBond> bonds_of(std::size_t point) const;
+  [[nodiscard]] std::vector<PlaneBond> unshortened_bonds_of(std::size_t point) const;
   [[nodiscard]] double stabilisation_modulus(std::size_t point) const;
 
   void update_points(std::span<const double> u);
@@ -95,13 +101,12 @@ class Membrane final : public Model {
   void gather_row(std::size_t row, std::span<const double> u, std::span<double> force) const;
   void scatter_listed(std::span<const double> u, std::span<double> force) const;
   [[nodiscard]] std::optional<Breakdown> first_collapsed() const;
-  [[nodiscard]] double bond_stiffness_sum(std::size_t point, std::span<const double> u,
-                                          std::vector<double>& per_bond) const;
+  void add_far_bound(const MembraneBond& bond, double row, std::span<double> bound) const;
+  [[nodiscard]] std::array<double, 3> family_curvature(std::size_t point) const;
 
   LatticeBody body_;
   Material material_;
   double stabilisation_ = 0;
-  double spacing_ = 0;
   std::size_t directed_bonds_ = 0;
   std::vector<Inclusion> inclusions_;
   std::vector<ListedFamily> listed_;            // in order of their points
@@ -126,5 +131,19 @@ class Membrane final : public Model {
   };
   std::vector<StencilBond> stencil_;
 };
+
+template <class Visit>
+void Membrane::for_each_bond(std::size_t point, const Visit& visit) const {
+  if (listed_index_[point] >= 0) {
+    for (const MembraneBond& bond : listed_[static_cast<std::size_t>(listed_index_[point])].bonds) visit(bond);
+    return;
+  }
+  for (std::size_t k = 0; k < stencil_.size(); ++k) {
+    if (!body_.bonds.exists(k, point)) continue;
+    double weight = 0;
+    for (std::size_t m = 0; m < kMoments; ++m) weight += coefficient_[m][point] * stencil_[k].weight[m];
+    visit(MembraneBond{{stencil_[k].x, stencil_[k].y}, weight, BondPlanes::neighbour(body_.stencil, k, point), -1, {0, 0}});
+  }
+}
 
 }  // namespace riven

@@ -1,6 +1,7 @@
 // The loops over points and bonds of the membrane: first the averages over each family, then the forces. A row of the
 // lattice is one task and writes only its own points.
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "base/lanes.hpp"
@@ -33,6 +34,8 @@ Vector difference(const double* ux, const double* uy, std::size_t i, std::ptrdif
 }  // namespace
 
 void Membrane::update_points(std::span<const double> u) {
+  for (std::size_t c = 0; c < inclusions_.size(); ++c)
+    inclusions_[c].rotation = Eigen::Rotation2Dd(u[inclusion_dof(c) + 2] / inclusions_[c].gyration);
   parallel_for(static_cast<std::ptrdiff_t>(body_.lattice.rows()), [&](std::ptrdiff_t r) {
     const auto row = static_cast<std::size_t>(r);
     average_row(row, u);
@@ -203,29 +206,25 @@ void Membrane::gather_row(std::size_t row, std::span<const double> u, std::span<
 
 /// Forces of the listed families on both ends of their bonds; few, so in one thread and in order.
 void Membrane::scatter_listed(std::span<const double> u, std::span<double> force) const {
+  const auto add = [&](std::size_t x_entry, std::size_t y_entry, const Eigen::Vector2d& t) {
+    force[x_entry] += t.x();
+    force[y_entry] += t.y();
+  };
   const std::size_t n = body_.lattice.size();
   for (const ListedFamily& family : listed_) {
     const PointForce law = point_force(family.point);
     for (const MembraneBond& bond : family.bonds) {
-      const Eigen::Vector2d y = deformed(family.point, bond, u);
-      const double inverse2 = 1 / bond.reference.squaredNorm();
-      const Eigen::Vector2d t =
-          bond.weight * inverse2 * ((law.a + law.b * y.squaredNorm() * inverse2) * y + law.n * bond.reference);
-      force[family.point] += t.x();
-      force[n + family.point] += t.y();
+      const Eigen::Vector2d t = bond_force(law, bond, deformed(family.point, bond, u));
+      add(family.point, n + family.point, t);
       if (bond.inclusion < 0) {
-        force[bond.neighbour] -= t.x();
-        force[n + bond.neighbour] -= t.y();
+        add(bond.neighbour, n + bond.neighbour, -t);
         continue;
       }
-      const auto inclusion = static_cast<std::size_t>(bond.inclusion);
-      const std::size_t dof = inclusion_dof(inclusion);
-      const double gyration = inclusions_[inclusion].gyration, angle = u[dof + 2] / gyration;
-      const Eigen::Vector2d arm(std::cos(angle) * bond.arm.x() - std::sin(angle) * bond.arm.y(),
-                                std::sin(angle) * bond.arm.x() + std::cos(angle) * bond.arm.y());
-      force[dof] -= t.x();
-      force[dof + 1] -= t.y();
-      force[dof + 2] -= (arm.x() * t.y() - arm.y() * t.x()) / gyration;
+      const Inclusion& inclusion = inclusions_[static_cast<std::size_t>(bond.inclusion)];
+      const std::size_t dof = inclusion_dof(static_cast<std::size_t>(bond.inclusion));
+      const Eigen::Vector2d arm = inclusion.rotation * bond.arm;
+      add(dof, dof + 1, -t);
+      force[dof + 2] -= (arm.x() * t.y() - arm.y() * t.x()) / inclusion.gyration;
     }
   }
 }

@@ -6,13 +6,14 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "solver/work.hpp"
 
 namespace riven {
 
 namespace {
 
 constexpr int kMostCuts = 8;            // a step may be halved this often before the run gives up
-constexpr double kMassSafety = 1.0;     // the row sums bound the tangent of the state they were taken at
+constexpr double kFirstStep = 0.01;     // of the increment: tells the direction in which the body deforms
 constexpr double kLargestDamping = 1.9; // below the critical 2 of eq. (11)
 constexpr int kProgressEvery = 50;      // iterations
 
@@ -41,7 +42,7 @@ class Relaxation {
 
   State run() {
     constraints_.set_parameter(settings_.start);
-    static_cast<void>(constraints_.work_since_last_call());
+    work_.begin(constraints_, settings_.start);
     for (const double target : settings_.targets) reach(target);
     return std::move(state_);
   }
@@ -54,7 +55,7 @@ class Relaxation {
     while (direction * (target - state_.parameter) > 1e-12 * std::abs(target)) {
       const double left = std::abs(target - state_.parameter);
       // Equal steps to the target, none of them a crumb.
-      const double step = left / std::ceil(left / increment - 1e-9);
+      const double step = state_.steps == 0 ? std::min(left, kFirstStep * increment) : left / std::ceil(left / increment - 1e-9);
       const bool last = step > left * (1 - 1e-9);
       const auto failure = load_step(last ? target : state_.parameter + direction * step);
       if (!failure) {
@@ -67,8 +68,8 @@ class Relaxation {
         continue;
       }
       if (++cuts > kMostCuts) give_up(*failure);
-      increment = 0.5 * step;
       good_steps_ = 0;
+      increment = 0.5 * (state_.steps == 0 ? increment : step);
       observer_.remarked(fmt::format("load step to {:.6g} failed ({}); going on with steps of {:.3g}",
                                      state_.parameter + direction * step, *failure, increment));
     }
@@ -144,7 +145,7 @@ class Relaxation {
   void set_masses() {
     model_.stiffness_bound(state_.u, mass_);
     constraints_.fold(mass_);
-    for (double& mass : mass_) mass *= 0.25 * kMassSafety;
+    for (double& mass : mass_) mass *= 0.25;
   }
 
   /// Norm of the free force and the quotient for the damping. Slaves and padding hold zero force.
@@ -185,7 +186,7 @@ class Relaxation {
   void balance() {
     EnergyBalance& energy = state_.energy;
     energy.strain = model_.strain_energy(state_.u);
-    energy.external_work += constraints_.work_since_last_call();
+    energy.external_work += work_.since_last_call(constraints_, state_.parameter);
     energy.largest = std::max({energy.largest, std::abs(energy.strain), std::abs(energy.external_work)});
   }
 
@@ -205,6 +206,7 @@ class Relaxation {
   Observer& observer_;
   std::size_t n_;
   State state_;
+  ParabolicWork work_;
   std::vector<double> force_, old_force_, velocity_, mass_;
   std::vector<double> before_;   // state one load step back
   double last_change_ = 0;       // of the parameter in the last load step
