@@ -206,7 +206,7 @@ class Relaxation {
   Observer& observer_;
   std::size_t n_;
   State state_;
-  ParabolicWork work_;
+  WorkIntegral work_{WorkIntegral::Rule::parabolic};
   std::vector<double> force_, old_force_, velocity_, mass_;
   std::vector<double> before_;   // state one load step back
   double last_change_ = 0;       // of the parameter in the last load step

@@ -6,10 +6,15 @@
 
 namespace riven {
 
-/// Work of the loads along a path of equilibria. The force is taken as a parabola of the load parameter through
-/// the last three states (error of fourth order in the step), the prescribed displacements as linear in between.
-class ParabolicWork {
+/// Work of the loads along a path, the prescribed displacements taken as linear between its states.
+class WorkIntegral {
  public:
+  enum class Rule {
+    trapezoidal,  // the force is linear in between: as exact as Verlet's steps are
+    parabolic,    // the force is a parabola of the parameter through the last three states: for long load steps
+  };
+  explicit WorkIntegral(Rule rule) : rule_(rule) {}
+
   void begin(const Constraints& constraints, double parameter);
   /// Work (J) from the last call, or from `begin`, to the constraints' present state.
   double since_last_call(const Constraints& constraints, double parameter);
@@ -21,7 +26,8 @@ class ParabolicWork {
     std::vector<double> force;
   };
   static Sample sample(const Constraints& constraints, double parameter);
-  std::vector<Sample> past_;  // one or two
+  Rule rule_;
+  std::vector<Sample> past_;  // one, or two for the parabola
 };
 
 }  // namespace riven

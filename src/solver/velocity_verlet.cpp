@@ -1,0 +1,192 @@
+#include "solver/velocity_verlet.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "solver/work.hpp"
+
+namespace riven {
+
+namespace {
+
+constexpr long kStepsBetweenEstimates = 100;
+// Verlet keeps the energy to the square of step times frequency, a few per cent at the most; beyond this the run is lost.
+constexpr double kRunaway = 0.1;
+
+/// Times at which something is written: multiples of an interval, and the end.
+class Schedule {
+ public:
+  Schedule(double interval, double end) : interval_(interval), end_(end) {}
+  [[nodiscard]] double next() const { return std::min(static_cast<double>(count_) * interval_, end_); }
+  /// Whether `time` is one of them; if so, moves on to the next.
+  bool due(double time) {
+    if (time < next() * (1 - 1e-12)) return false;
+    ++count_;
+    return true;
+  }
+
+ private:
+  double interval_, end_;
+  long count_ = 1;
+};
+
+class Verlet {
+ public:
+  Verlet(Model& model, Constraints& constraints, const VelocityVerletSettings& settings, Observer& observer)
+      : model_(model), constraints_(constraints), settings_(settings), observer_(observer), n_(model.dofs()) {
+    state_.parameter = 0;
+    state_.u.assign(n_, 0.0);
+    state_.v.assign(n_, 0.0);
+    force_.assign(n_, 0.0);
+    mass_.assign(n_, 0.0);
+    model_.mass(mass_);
+    for (std::size_t i = 0; i < n_; ++i)
+      if (!constraints_.is_free(i)) mass_[i] = 0;
+  }
+
+  State run() {
+    constraints_.set_parameter(0);
+    constraints_.apply(state_.u);
+    evaluate();
+    work_.begin(constraints_, 0);
+    start_energy_ = model_.strain_energy(state_.u);
+    estimate_step();
+    balance();
+    observer_.reached(state_, constraints_, true);
+    Schedule outputs(settings_.every, settings_.until), history(settings_.history_every, settings_.until);
+    while (state_.parameter < settings_.until * (1 - 1e-12)) {
+      const double event = std::min(outputs.next(), history.next());
+      advance_to(event);
+      balance();
+      check();
+      const bool output = outputs.due(event), row = history.due(event);
+      if (output || row) observer_.reached(state_, constraints_, output);
+    }
+    return std::move(state_);
+  }
+
+ private:
+  /// Steps of equal length that end at `event` exactly.
+  void advance_to(double event) {
+    while (state_.parameter < event) {
+      const double left = event - state_.parameter;
+      const auto steps = std::max(1L, static_cast<long>(std::ceil(left / step_ - 1e-9)));
+      const long now = std::min(steps, kStepsBetweenEstimates);
+      const double dt = left / static_cast<double>(steps);
+      const double begin = state_.parameter;
+      for (long s = 1; s <= now; ++s) step(dt, s == steps ? event : begin + static_cast<double>(s) * dt);
+      observer_.progressed({state_.parameter, 0, settings_.until, state_.steps, 0, 0, 0});
+      estimate_step();
+      if (now < steps) check_energy_now();
+    }
+  }
+
+  void step(double dt, double time) {
+    kick(0.5 * dt, dt);
+    state_.parameter = time;
+    ++state_.steps;
+    constraints_.set_parameter(time);
+    constraints_.apply(state_.u);
+    evaluate();
+    kick(0.5 * dt, 0);
+    state_.energy.external_work += work_.since_last_call(constraints_, time);
+  }
+
+  /// v += kick * F / m, then u += drift * v.
+  void kick(double kick, double drift) {
+    const auto pieces = static_cast<std::ptrdiff_t>((n_ + kSumChunk - 1) / kSumChunk);
+    parallel_for(pieces, [&](std::ptrdiff_t p) {
+      const std::size_t begin = static_cast<std::size_t>(p) * kSumChunk, end = std::min(begin + kSumChunk, n_);
+      for (std::size_t i = begin; i < end; ++i) {
+        if (mass_[i] == 0) continue;
+        state_.v[i] += kick * force_[i] / mass_[i];
+        state_.u[i] += drift * state_.v[i];
+      }
+    });
+  }
+
+  void evaluate() {
+    ++state_.evaluations;
+    if (const auto breakdown = model_.internal_force(state_.u, force_)) fail(*breakdown);
+    constraints_.reduce(force_);
+  }
+
+  void estimate_step() {
+    const double limit = stable_step(model_, constraints_, state_.u);
+    if (!settings_.step) {
+      step_ = settings_.safety * limit;
+      return;
+    }
+    step_ = *settings_.step;
+    if (step_ <= limit) return;
+    const std::string what =
+        fmt::format("the step {:.4g} s is above the stable one, {:.4g} s", step_, limit);
+    if (state_.steps == 0) throw InputError(what + "; leave solver.step out to have it chosen");
+    throw SolverFailure(fmt::format("at t = {:.6g} s {}: the body has stiffened as it deformed; leave solver.step out to "
+                                    "have it follow", state_.parameter, what));
+  }
+
+  void balance() {
+    EnergyBalance& energy = state_.energy;
+    energy.kinetic = ordered_sum_of(n_, [&](std::size_t i) { return 0.5 * mass_[i] * state_.v[i] * state_.v[i]; });
+    energy.strain = model_.strain_energy(state_.u) - start_energy_;
+    energy.largest = std::max({energy.largest, energy.kinetic, std::abs(energy.strain), std::abs(energy.external_work)});
+  }
+
+  void check_energy_now() {
+    balance();
+    check();
+  }
+
+  void check() {
+    if (const auto breakdown = model_.inspect(state_.u)) fail(*breakdown);
+    const double error = state_.energy.error();
+    if (std::abs(error) <= kRunaway) return;
+    throw SolverFailure(fmt::format(
+        "at t = {:.6g} s, step {}, the energy runs away: {:.1f} % of it came from nowhere. The step of {:.4g} s is likely "
+        "too long for this deformation; try a smaller solver.safety",
+        state_.parameter, state_.steps, 100 * error, step_));
+  }
+
+  [[noreturn]] void fail(const Breakdown& breakdown) const {
+    throw SolverFailure(fmt::format("at t = {:.6g} s, step {}: {} at ({:.4g}, {:.4g}, {:.4g}) m. The load may be too fast or "
+                                    "too large for this lattice and law; try a slower load, a finer lattice or a smaller "
+                                    "solver.safety",
+                                    state_.parameter, state_.steps, breakdown.what, breakdown.position[0],
+                                    breakdown.position[1], breakdown.position[2]));
+  }
+
+  Model& model_;
+  Constraints& constraints_;
+  const VelocityVerletSettings& settings_;
+  Observer& observer_;
+  std::size_t n_;
+  State state_;
+  WorkIntegral work_{WorkIntegral::Rule::trapezoidal};
+  std::vector<double> force_, mass_;  // mass 0 where nothing is free to move
+  double step_ = 0;
+  double start_energy_ = 0;
+};
+
+}  // namespace
+
+double stable_step(Model& model, const Constraints& constraints, std::span<const double> u) {
+  std::vector<double> bound(model.dofs()), mass(model.dofs());
+  model.stiffness_bound(u, bound);
+  constraints.fold(bound);
+  model.mass(mass);
+  double largest = 0;  // bound of the highest squared frequency
+  for (std::size_t i = 0; i < bound.size(); ++i)
+    if (constraints.is_free(i) && mass[i] > 0) largest = std::max(largest, bound[i] / mass[i]);
+  return 2 / std::sqrt(largest);
+}
+
+State march(Model& model, Constraints& constraints, const VelocityVerletSettings& settings, Observer& observer) {
+  return Verlet(model, constraints, settings, observer).run();
+}
+
+}  // namespace riven
