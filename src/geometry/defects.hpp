@@ -12,8 +12,8 @@ struct Defects {
   std::vector<Segment> cracks;
   std::vector<Shape> inclusions;
 
-  /// Whether the straight line from `a` to `b` is interrupted by a hole or a crack: its open segment enters a hole's
-  /// interior, not counting a part that starts at an end point inside (a kept point of a cut cell).
+  /// Whether the straight line from `a` to `b` is interrupted by a hole or a crack: its open segment enters a
+  /// hole's interior, not counting a part that starts at an end point inside (a kept point of a cut cell).
   /// `tolerance` is a length (m) far below the spacing.
   [[nodiscard]] bool cuts(const Point& a, const Point& b, double tolerance) const;
 

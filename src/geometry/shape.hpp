@@ -49,8 +49,9 @@ double signed_distance(const Shape& shape, const Point& p);
 /// all sides: a segment that only touches the surface or runs along it has no such part.
 std::optional<Interval> chord(const Shape& shape, const Point& a, const Point& b, double tolerance);
 
-/// Fraction of the square, cube or interval (`dimension` 2, 3, 1) of edge `spacing` (m) centred at `cell` that
-/// the shape covers. Exact for boxes and, in 2D, for discs.
+/// Fraction of the square, cube or interval (`dimension` 2, 3, 1) of edge `spacing` (m) centred at `cell`
+/// that the shape covers; exactly 0 or 1 for a cell that only touches the surface. Exact to rounding for
+/// boxes and discs, to 1e-4 for balls in 3D.
 double covered_fraction(const Shape& shape, const Point& cell, double spacing, int dimension);
 
 /// Whether two shapes share interior points, by more than `tolerance` (m).
@@ -59,8 +60,8 @@ bool overlap(const Shape& a, const Shape& b, double tolerance);
 /// Distance from a point to a segment (m).
 double distance(const Segment& segment, const Point& p);
 
-/// Whether the segment from `a` to `b` crosses the crack. Touching it from one side is no crossing; a bond
-/// through a crack's end counts as crossing.
+/// Whether the segment from `a` to `b` crosses the crack, in the x-y plane. Touching the crack from one side
+/// is no crossing; a bond through a crack's end counts as crossing.
 bool crosses(const Segment& crack, const Point& a, const Point& b, double tolerance);
 
 }  // namespace riven
