@@ -19,8 +19,7 @@ class DeviationSum {
 
   /// 0 when both vanish, infinite when only the reference does.
   [[nodiscard]] double relative_l2() const {
-    if (deviation2_ == 0) return 0;
-    return reference2_ > 0 ? std::sqrt(deviation2_ / reference2_) : std::numeric_limits<double>::infinity();
+    return deviation2_ == 0 ? 0 : std::sqrt(deviation2_ / reference2_);
   }
   [[nodiscard]] double maximum() const { return std::isinf(maximum_) && maximum_ < 0 ? 0 : maximum_; }
 
