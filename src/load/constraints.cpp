@@ -1,0 +1,91 @@
+#include "load/constraints.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace riven {
+
+namespace {
+
+double offset(const Constraint& constraint, double parameter) {
+  double sum = 0;
+  for (const PrescribedTerm& term : constraint.terms)
+    sum += term.factor * term.displacement(term.position, parameter);
+  return sum;
+}
+
+}  // namespace
+
+void Constraints::add(Constraint constraint) {
+  free_[constraint.slave] = false;
+  (constraint.master == Constraint::kNone ? prescribed_ : mirrored_).push_back(std::move(constraint));
+  offset_.push_back(0.0);
+  external_.push_back(0.0);
+}
+
+void Constraints::set_parameter(double parameter) {
+  std::size_t n = 0;
+  for (const auto* list : {&prescribed_, &mirrored_})
+    for (const Constraint& constraint : *list) offset_[n++] = offset(constraint, parameter);
+}
+
+void Constraints::apply(std::span<double> u) const {
+  std::size_t n = 0;
+  for (const Constraint& constraint : prescribed_) u[constraint.slave] = offset_[n++];
+  for (const Constraint& constraint : mirrored_)
+    u[constraint.slave] = constraint.sign * u[constraint.master] + offset_[n++];
+}
+
+void Constraints::reduce(std::span<double> force) {
+  for (Point& reaction : reaction_) reaction = {};
+  double square = 0;
+  const auto take = [&](const Constraint& constraint, std::size_t n) {
+    const double external = -force[constraint.slave];
+    external_[n] = external;
+    square += external * external;
+    for (const PrescribedTerm& term : constraint.terms)
+      reaction_[term.load][static_cast<std::size_t>(term.axis)] += term.factor * external;
+    force[constraint.slave] = 0;
+  };
+  for (std::size_t m = 0; m < mirrored_.size(); ++m) {
+    force[mirrored_[m].master] += mirrored_[m].sign * force[mirrored_[m].slave];
+    take(mirrored_[m], prescribed_.size() + m);
+  }
+  for (std::size_t p = 0; p < prescribed_.size(); ++p) take(prescribed_[p], p);
+  reaction_norm_ = std::sqrt(square);
+}
+
+void Constraints::fold(std::span<double> bound) const {
+  for (const Constraint& constraint : mirrored_) {
+    bound[constraint.master] += bound[constraint.slave];
+    bound[constraint.slave] = 0;
+  }
+  for (const Constraint& constraint : prescribed_) bound[constraint.slave] = 0;
+}
+
+AffineIncrement Constraints::affine_increment(double from, double to) const {
+  AffineIncrement result;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<std::array<double, 5>> rows;  // 1, x, y, z, du
+    for (const auto* list : {&prescribed_, &mirrored_})
+      for (const Constraint& constraint : *list)
+        for (const PrescribedTerm& term : constraint.terms)
+          if (term.axis == axis)
+            rows.push_back({1, term.position[0], term.position[1], term.position[2],
+                            term.displacement(term.position, to) - term.displacement(term.position, from)});
+    if (rows.empty()) continue;
+    Eigen::MatrixXd a(static_cast<Eigen::Index>(rows.size()), 4);
+    Eigen::VectorXd b(a.rows());
+    for (Eigen::Index r = 0; r < a.rows(); ++r) {
+      for (Eigen::Index c = 0; c < 4; ++c) a(r, c) = rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
+      b(r) = rows[static_cast<std::size_t>(r)][4];
+    }
+    const Eigen::VectorXd fit = a.completeOrthogonalDecomposition().solve(b);
+    const auto row = static_cast<std::size_t>(axis);
+    result.shift[row] = fit(0);
+    result.gradient[row] = {fit(1), fit(2), fit(3)};
+  }
+  return result;
+}
+
+}  // namespace riven

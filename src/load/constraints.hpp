@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "geometry/shape.hpp"
+
+namespace riven {
+
+/// A prescribed quantity as a function of the undeformed position (m) and the load parameter: the stretch in
+/// statics, the time (s) in dynamics.
+using LoadFunction = std::function<double(const Point& position, double parameter)>;
+
+/// One prescribed displacement component that enters a constraint, `factor` times.
+struct PrescribedTerm {
+  LoadFunction displacement;   // m
+  Point position{};            // where it is taken
+  int axis = 0;
+  double factor = 1;
+  std::size_t load = 0;        // number of the load; its reaction collects this constraint's force
+};
+
+/// u[slave] = sign * u[master] + sum of factor * displacement. Without master: a prescribed entry. Ghost points of a
+/// mirrored edge are slaves of the points that they mirror (peridynamics theory, 5a rule 1).
+struct Constraint {
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  std::size_t slave = 0;
+  std::size_t master = kNone;
+  double sign = 1;
+  std::vector<PrescribedTerm> terms;
+};
+
+/// Displacement change of the prescribed places between two parameters, fitted by du_i = gradient_ij X_j + shift_i.
+struct AffineIncrement {
+  std::array<std::array<double, 3>, 3> gradient{};
+  Point shift{};
+};
+
+/// All constraints on a state vector, with the forces that they need.
+class Constraints {
+ public:
+  Constraints(std::size_t dofs, std::size_t loads) : free_(dofs, true), reaction_(loads) {}
+
+  /// A slave is no master of another one, but a prescribed entry may be a master.
+  void add(Constraint constraint);
+
+  /// Evaluates the prescribed displacements; `apply` then uses them.
+  void set_parameter(double parameter);
+  /// Makes a state obey the constraints.
+  void apply(std::span<double> u) const;
+  /// Takes the internal force out of the slaves: adds it to their masters by the chain rule, keeps what the constraints
+  /// must supply (reactions), and leaves 0 there.
+  void reduce(std::span<double> force);
+  /// Adds a slave's row bound to its master's and leaves 0 at slaves: the bound of the constrained system.
+  void fold(std::span<double> bound) const;
+
+  [[nodiscard]] bool is_free(std::size_t dof) const { return free_[dof]; }
+  /// External force (N) along x, y, z that a load exerts on the body in the state of the last `reduce`; positive
+  /// pulls towards positive coordinates.
+  [[nodiscard]] const Point& reaction(std::size_t load) const { return reaction_[load]; }
+  /// L2 norm of the constraint forces of the last `reduce` (N).
+  [[nodiscard]] double reaction_norm() const { return reaction_norm_; }
+
+  /// Prescribed part of every constraint (m) and the external force on its slave (N), in one order: the work of the
+  /// loads is the integral of force over offset.
+  [[nodiscard]] std::span<const double> offsets() const { return offset_; }
+  [[nodiscard]] std::span<const double> forces() const { return external_; }
+
+  [[nodiscard]] AffineIncrement affine_increment(double from, double to) const;
+
+ private:
+  std::vector<Constraint> prescribed_;   // without master: applied first, reduced last
+  std::vector<Constraint> mirrored_;
+  std::vector<bool> free_;
+  std::vector<double> offset_, external_;  // of prescribed_, then mirrored_
+  std::vector<Point> reaction_;
+  double reaction_norm_ = 0;
+};
+
+}  // namespace riven

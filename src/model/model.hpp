@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "geometry/shape.hpp"
+
+namespace riven {
+
+/// A state that a model can't answer to: where, and what is wrong with it.
+struct Breakdown {
+  Point position{};
+  std::string what;
+};
+
+/// A result per material point: `components` values each, point-major.
+struct ModelField {
+  std::string name;
+  int components = 1;
+  std::vector<double> values;
+};
+
+/// Body and materials. A state is one vector of displacements u (m); its layout belongs to the model. Solvers ask
+/// for forces and know no more than this interface.
+class Model {
+ public:
+  virtual ~Model() = default;
+
+  /// Length of a state vector. Entries that are no degree of freedom (padding) have zero force and mass.
+  [[nodiscard]] virtual std::size_t dofs() const = 0;
+
+  /// Internal force -dE/du (N) at every entry. Returns what is wrong if the state is outside the model's range;
+  /// `force` is then not to be used.
+  [[nodiscard]] virtual std::optional<Breakdown> internal_force(std::span<const double> u, std::span<double> force) = 0;
+
+  /// Strain energy E (J).
+  [[nodiscard]] virtual double strain_energy(std::span<const double> u) = 0;
+
+  /// Lumped mass (kg) of every entry; 0 for padding.
+  virtual void mass(std::span<double> mass) const = 0;
+
+  /// Upper bound of the sum of |tangent stiffness| over a row (N/m), for stable steps and fictitious masses.
+  virtual void stiffness_bound(std::span<const double> u, std::span<double> bound) = 0;
+
+  /// What a force balance does not show: folded points, for example. Asked at converged and output states.
+  [[nodiscard]] virtual std::optional<Breakdown> inspect(std::span<const double> u) = 0;
+
+  /// Adds the displacement field gradient X + shift (m) to a state, everywhere: a first guess for solvers.
+  virtual void move(std::span<double> u, const std::array<std::array<double, 3>, 3>& gradient, const Point& shift) const = 0;
+
+  /// Undeformed positions and fields of the material points, in one order.
+  [[nodiscard]] virtual std::vector<Point> positions() const = 0;
+  [[nodiscard]] virtual std::vector<ModelField> fields(std::span<const double> u) = 0;
+
+  /// Points, and directed bonds that one force evaluation visits.
+  [[nodiscard]] virtual std::size_t points() const = 0;
+  [[nodiscard]] virtual std::size_t bonds() const = 0;
+};
+
+}  // namespace riven

@@ -1,0 +1,242 @@
+// The loops over points and bonds of the membrane: first the averages over each family, then the forces. A row of the
+// lattice is one task and writes only its own points.
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "base/lanes.hpp"
+#include "base/parallel.hpp"
+#include "peridynamics/family_energy.hpp"
+#include "peridynamics/membrane.hpp"
+
+namespace riven {
+
+namespace {
+
+// Below this share of a^2 the squared area ratio says that the family has collapsed (theory, section 5).
+constexpr double kCollapse = 1e-3;
+
+const double* at(const double* plane, std::size_t i, std::ptrdiff_t shift = 0) {
+  return plane + static_cast<std::ptrdiff_t>(i) + shift;
+}
+
+Lanes select(LaneMask mask, Lanes value) { return mask ? value : Lanes{}; }
+
+struct Vector {
+  Lanes x, y;
+};
+
+/// u_neighbour - u_point of eight points.
+Vector difference(const double* ux, const double* uy, std::size_t i, std::ptrdiff_t shift) {
+  return {load(at(ux, i, shift)) - load(at(ux, i)), load(at(uy, i, shift)) - load(at(uy, i))};
+}
+
+}  // namespace
+
+void Membrane::update_points(std::span<const double> u) {
+  for (std::size_t c = 0; c < inclusions_.size(); ++c)
+    inclusions_[c].rotation = Eigen::Rotation2Dd(u[inclusion_dof(c) + 2] / inclusions_[c].gyration);
+  parallel_for(static_cast<std::ptrdiff_t>(body_.lattice.rows()), [&](std::ptrdiff_t r) {
+    const auto row = static_cast<std::size_t>(r);
+    average_row(row, u);
+    std::visit([&](const auto& law) { respond_row(law, row); }, material_.law);
+  });
+  parallel_for(static_cast<std::ptrdiff_t>(listed_.size()),
+               [&](std::ptrdiff_t n) { respond_listed(listed_[static_cast<std::size_t>(n)], u); });
+}
+
+/// Family averages of the points of a row that follow the lattice's formula.
+void Membrane::average_row(std::size_t row, std::span<const double> u) {
+  const double* ux = u.data();
+  const double* uy = ux + body_.lattice.size();
+  const std::size_t begin = body_.lattice.row_begin(row);
+  for (std::size_t i = begin; i < begin + body_.lattice.row_length(); i += kLanes) {
+    std::array<Lanes, kMoments> c;
+    for (std::size_t m = 0; m < kMoments; ++m) c[m] = load(at(coefficient_[m].data(), i));
+    Lanes s2_sum{}, s4_sum{}, gxx{}, gxy{}, gyx{}, gyy{};
+    for (std::size_t k = 0; k < stencil_.size(); ++k) {
+      const std::uint8_t bits = body_.bonds.mask(k, i / kLanes);
+      if (bits == 0) continue;
+      const StencilBond& bond = stencil_[k];
+      const Vector du = difference(ux, uy, i, bond.shift);
+      const Vector y = {bond.x + du.x, bond.y + du.y};
+      Lanes w = c[0] * bond.weight[0];
+      for (std::size_t m = 1; m < kMoments; ++m) w += c[m] * bond.weight[m];
+      w = select(expand(bits), w);
+      const Lanes s2 = (y.x * y.x + y.y * y.y) * bond.inverse2;
+      const Lanes ws2 = w * s2;
+      s2_sum += ws2;
+      s4_sum += ws2 * s2;
+      const Lanes wx = w * (bond.x * bond.inverse2), wy = w * (bond.y * bond.inverse2);
+      gxx += wx * y.x;
+      gxy += wy * y.x;
+      gyx += wx * y.y;
+      gyy += wy * y.y;
+    }
+    store(mean_s2_.data() + i, s2_sum);
+    store(mean_s4_.data() + i, s4_sum);
+    store(mean_gradient_[0].data() + i, gxx);
+    store(mean_gradient_[1].data() + i, gxy);
+    store(mean_gradient_[2].data() + i, gyx);
+    store(mean_gradient_[3].data() + i, gyy);
+  }
+}
+
+/// Energy and force law of the points of a row, from their averages; theory eq. (9), and rule 5 of 5a.
+template <class Law>
+void Membrane::respond_row(const Law& law, std::size_t row) {
+  collapsed_in_row_[row] = -1;
+  const std::size_t begin = body_.lattice.row_begin(row);
+  for (std::size_t i = begin; i < begin + body_.lattice.row_length(); ++i) {
+    if (coefficient_[0][i] == 0) continue;  // no body point, or a listed one
+    const double a = mean_s2_[i], b = mean_s4_[i];
+    if (!(area_ratio_squared(a, b) >= kCollapse * a * a)) {
+      if (collapsed_in_row_[row] < 0) collapsed_in_row_[row] = static_cast<std::ptrdiff_t>(i);
+      continue;
+    }
+    const FamilyEnergy e = family_energy(law, a, b);
+    const double v = body_.volume[i], kappa = kappa_[i];
+    double gradient2 = 0;
+    for (std::size_t c = 0; c < 4; ++c) {
+      gradient2 += mean_gradient_[c][i] * mean_gradient_[c][i];
+      force_n_[c][i] = -4 * v * kappa * mean_gradient_[c][i];
+    }
+    energy_density_[i] = e.w + kappa * (a - 2 * gradient2);
+    force_a_[i] = 2 * v * (e.wa + kappa);
+    force_b_[i] = 4 * v * e.wb;
+  }
+}
+
+void Membrane::set_point(std::size_t point, double energy, const PointForce& force) {
+  energy_density_[point] = energy;
+  force_a_[point] = force.a;
+  force_b_[point] = force.b;
+  for (std::size_t c = 0; c < 4; ++c)
+    force_n_[c][point] = force.n(static_cast<Eigen::Index>(c / 2), static_cast<Eigen::Index>(c % 2));
+}
+
+PointForce Membrane::point_force(std::size_t point) const {
+  PointForce force{force_a_[point], force_b_[point], {}};
+  force.n << force_n_[0][point], force_n_[1][point], force_n_[2][point], force_n_[3][point];
+  return force;
+}
+
+void Membrane::respond_listed(const ListedFamily& family, std::span<const double> u) {
+  const std::size_t i = family.point;
+  double a = 0, b = 0;
+  Eigen::Matrix2d m = Eigen::Matrix2d::Zero();
+  for (const MembraneBond& bond : family.bonds) {
+    const Eigen::Vector2d y = deformed(i, bond, u);
+    const double inverse2 = 1 / bond.reference.squaredNorm();
+    const double s2 = y.squaredNorm() * inverse2;
+    a += bond.weight * s2;
+    b += bond.weight * s2 * s2;
+    m += bond.weight * inverse2 * y * bond.reference.transpose();
+  }
+  mean_s2_[i] = a;
+  mean_s4_[i] = b;
+  const Eigen::Matrix2d f = family.by_gradient ? Eigen::Matrix2d(m * family.inverse_shape) : Eigen::Matrix2d(2 * m);
+  for (std::size_t c = 0; c < 4; ++c)  // half of F, as for the points of the formula
+    mean_gradient_[c][i] = 0.5 * f(static_cast<Eigen::Index>(c / 2), static_cast<Eigen::Index>(c % 2));
+  const double v = body_.volume[i], kappa = kappa_[i];
+  const double stabilisation = kappa * (a - f.cwiseProduct(m).sum());
+  if (family.by_gradient) {
+    mean_s4_[i] = 0.5 * (3 * a * a - f.determinant() * f.determinant());  // so that (7) tells a collapse here too
+    const PlaneResponse response = material_.plane_stress(f);
+    set_point(i, response.energy + stabilisation,
+              {2 * v * kappa, 0, v * (response.stress * family.inverse_shape - 2 * kappa * f)});
+  } else {
+    const FamilyEnergy e = std::visit([&](const auto& law) { return family_energy(law, a, b); }, material_.law);
+    set_point(i, e.w + stabilisation, {2 * v * (e.wa + kappa), 4 * v * e.wb, -2 * v * kappa * f});
+  }
+}
+
+std::optional<Breakdown> Membrane::first_collapsed() const {
+  const auto breakdown = [&](std::size_t i) {
+    return Breakdown{body_.lattice.position(i), "the sheet collapses: the area ratio of a family falls to zero"};
+  };
+  for (const std::ptrdiff_t i : collapsed_in_row_)
+    if (i >= 0) return breakdown(static_cast<std::size_t>(i));
+  for (const ListedFamily& family : listed_) {
+    const double a = mean_s2_[family.point], b = mean_s4_[family.point];
+    if (!(area_ratio_squared(a, b) >= kCollapse * a * a)) return breakdown(family.point);
+  }
+  return std::nullopt;
+}
+
+/// Forces on the points of a row: from their own law and from those of their neighbours (theory, eq. (1)).
+void Membrane::gather_row(std::size_t row, std::span<const double> u, std::span<double> force) const {
+  const std::size_t n = body_.lattice.size();
+  const double* ux = u.data();
+  const double* uy = ux + n;
+  const std::size_t begin = body_.lattice.row_begin(row);
+  for (std::size_t i = begin; i < begin + body_.lattice.row_length(); i += kLanes) {
+    std::array<Lanes, kMoments> c;
+    for (std::size_t m = 0; m < kMoments; ++m) c[m] = load(at(coefficient_[m].data(), i));
+    const Lanes a = load(at(force_a_.data(), i)), b = load(at(force_b_.data(), i));
+    std::array<Lanes, 4> p;
+    for (std::size_t q = 0; q < 4; ++q) p[q] = load(at(force_n_[q].data(), i));
+    Lanes fx{}, fy{};
+    for (std::size_t k = 0; k < stencil_.size(); ++k) {
+      const std::uint8_t bits = body_.bonds.mask(k, i / kLanes);
+      if (bits == 0) continue;
+      const StencilBond& bond = stencil_[k];
+      const Vector du = difference(ux, uy, i, bond.shift);
+      const Vector y = {bond.x + du.x, bond.y + du.y};
+      const Lanes s2 = (y.x * y.x + y.y * y.y) * bond.inverse2;
+      Lanes own = c[0] * bond.weight[0], far = load(at(coefficient_[0].data(), i, bond.shift)) * bond.weight[0];
+      for (std::size_t m = 1; m < kMoments; ++m) {
+        own += c[m] * bond.weight[m];
+        far += load(at(coefficient_[m].data(), i, bond.shift)) * bond.weight[m];
+      }
+      const LaneMask mask = expand(bits);
+      own = select(mask, own * bond.inverse2);
+      far = select(mask, far * bond.inverse2);
+      const Lanes t = own * (a + b * s2) + far * (load(at(force_a_.data(), i, bond.shift)) +
+                                                  load(at(force_b_.data(), i, bond.shift)) * s2);
+      std::array<Lanes, 4> q;
+      for (std::size_t m = 0; m < 4; ++m) q[m] = own * p[m] + far * load(at(force_n_[m].data(), i, bond.shift));
+      fx += t * y.x + q[0] * bond.x + q[1] * bond.y;
+      fy += t * y.y + q[2] * bond.x + q[3] * bond.y;
+    }
+    store(force.data() + i, fx);
+    store(force.data() + n + i, fy);
+  }
+}
+
+/// Forces of the listed families on both ends of their bonds; few, so in one thread and in order.
+void Membrane::scatter_listed(std::span<const double> u, std::span<double> force) const {
+  const auto add = [&](std::size_t x_entry, std::size_t y_entry, const Eigen::Vector2d& t) {
+    force[x_entry] += t.x();
+    force[y_entry] += t.y();
+  };
+  const std::size_t n = body_.lattice.size();
+  for (const ListedFamily& family : listed_) {
+    const PointForce law = point_force(family.point);
+    for (const MembraneBond& bond : family.bonds) {
+      const Eigen::Vector2d t = bond_force(law, bond, deformed(family.point, bond, u));
+      add(family.point, n + family.point, t);
+      if (bond.inclusion < 0) {
+        add(bond.neighbour, n + bond.neighbour, -t);
+        continue;
+      }
+      const Inclusion& inclusion = inclusions_[static_cast<std::size_t>(bond.inclusion)];
+      const std::size_t dof = inclusion_dof(static_cast<std::size_t>(bond.inclusion));
+      const Eigen::Vector2d arm = inclusion.rotation * bond.arm;
+      add(dof, dof + 1, -t);
+      force[dof + 2] -= (arm.x() * t.y() - arm.y() * t.x()) / inclusion.gyration;
+    }
+  }
+}
+
+std::optional<Breakdown> Membrane::internal_force(std::span<const double> u, std::span<double> force) {
+  update_points(u);
+  if (auto breakdown = first_collapsed()) return breakdown;
+  parallel_for(static_cast<std::ptrdiff_t>(body_.lattice.rows()),
+               [&](std::ptrdiff_t row) { gather_row(static_cast<std::size_t>(row), u, force); });
+  for (std::size_t d = 2 * body_.lattice.size(); d < dofs(); ++d) force[d] = 0;
+  scatter_listed(u, force);
+  return std::nullopt;
+}
+
+}  // namespace riven

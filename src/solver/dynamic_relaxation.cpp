@@ -1,0 +1,222 @@
+#include "solver/dynamic_relaxation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.hpp"
+#include "solver/work.hpp"
+
+namespace riven {
+
+namespace {
+
+constexpr int kMostCuts = 8;            // a step may be halved this often before the run gives up
+constexpr double kFirstStep = 0.01;     // of the increment: tells the direction in which the body deforms
+constexpr double kLargestDamping = 1.9; // below the critical 2 of eq. (11)
+constexpr int kProgressEvery = 50;      // iterations
+
+/// Sums that one iteration needs, gathered in one sweep.
+struct Sums {
+  double force2 = 0;        // F.F over free entries
+  double quotient_over = 0; // U.K U, U.U of eq. (11)
+  double quotient_under = 0;
+
+  Sums& operator+=(const Sums& other) {
+    force2 += other.force2;
+    quotient_over += other.quotient_over;
+    quotient_under += other.quotient_under;
+    return *this;
+  }
+};
+
+class Relaxation {
+ public:
+  Relaxation(Model& model, Constraints& constraints, const DynamicRelaxationSettings& settings, Observer& observer)
+      : model_(model), constraints_(constraints), settings_(settings), observer_(observer), n_(model.dofs()) {
+    state_.u.assign(n_, 0.0);
+    state_.parameter = settings.start;
+    for (auto* vector : {&force_, &old_force_, &velocity_, &mass_, &before_}) vector->assign(n_, 0.0);
+  }
+
+  State run() {
+    constraints_.set_parameter(settings_.start);
+    work_.begin(constraints_, settings_.start);
+    for (const double target : settings_.targets) reach(target);
+    return std::move(state_);
+  }
+
+ private:
+  void reach(double target) {
+    const double direction = target < state_.parameter ? -1 : 1;
+    double increment = settings_.increment;
+    int cuts = 0;
+    while (direction * (target - state_.parameter) > 1e-12 * std::abs(target)) {
+      const double left = std::abs(target - state_.parameter);
+      // Equal steps to the target, none of them a crumb.
+      const double step = state_.steps == 0 ? std::min(left, kFirstStep * increment) : left / std::ceil(left / increment - 1e-9);
+      const bool last = step > left * (1 - 1e-9);
+      const auto failure = load_step(last ? target : state_.parameter + direction * step);
+      if (!failure) {
+        observer_.reached(state_, constraints_, last);
+        if (cuts > 0 && ++good_steps_ >= 4) {
+          --cuts;
+          increment *= 2;
+          good_steps_ = 0;
+        }
+        continue;
+      }
+      if (++cuts > kMostCuts) give_up(*failure);
+      good_steps_ = 0;
+      increment = 0.5 * (state_.steps == 0 ? increment : step);
+      observer_.remarked(fmt::format("load step to {:.6g} failed ({}); going on with steps of {:.3g}",
+                                     state_.parameter + direction * step, *failure, increment));
+    }
+  }
+
+  [[noreturn]] void give_up(const std::string& failure) const {
+    throw SolverFailure(fmt::format(
+        "no equilibrium beyond {:.6g}, not even with load steps {} times smaller: {}. The sheet may have lost "
+        "stability there (wrinkling, folding), or the law may not stand the load; try a smaller solver.increment, a finer "
+        "lattice, or look at the last good state",
+        state_.parameter, 1 << kMostCuts, failure));
+  }
+
+  /// Takes the state to a new parameter, or leaves it as it was and says why.
+  std::optional<std::string> load_step(double target) {
+    const std::vector<double> start = state_.u;
+    predict(target);
+    constraints_.set_parameter(target);
+    auto failure = equilibrate(target, start);
+    if (failure) {
+      state_.u = start;
+      constraints_.set_parameter(state_.parameter);
+      return failure;
+    }
+    const double change = target - state_.parameter;
+    before_ = start;
+    last_change_ = change;
+    state_.parameter = target;
+    ++state_.steps;
+    balance();
+    return std::nullopt;
+  }
+
+  /// First guess of the next state: the path so far, extrapolated, or an affine motion with the load.
+  void predict(double target) {
+    const double change = target - state_.parameter;
+    if (last_change_ != 0) {
+      const double ratio = change / last_change_;
+      for (std::size_t i = 0; i < n_; ++i) state_.u[i] += ratio * (state_.u[i] - before_[i]);
+      return;
+    }
+    const AffineIncrement affine = constraints_.affine_increment(state_.parameter, target);
+    model_.move(state_.u, affine.gradient, affine.shift);
+  }
+
+  std::optional<std::string> equilibrate(double target, const std::vector<double>& start) {
+    std::fill(velocity_.begin(), velocity_.end(), 0.0);
+    constraints_.apply(state_.u);
+    set_masses();
+    for (long iteration = 0; iteration < settings_.max_iterations; ++iteration) {
+      std::swap(force_, old_force_);
+      if (const auto breakdown = evaluate()) return describe(*breakdown);
+      const Sums sums = sweep(iteration == 0, start);
+      const double residual = std::sqrt(sums.force2) / constraints_.reaction_norm();
+      if (!std::isfinite(sums.force2)) return "the forces are no longer finite";
+      if (iteration % kProgressEvery == 0 || residual <= settings_.tolerance) report(target, iteration, residual);
+      if (std::sqrt(sums.force2) <= settings_.tolerance * constraints_.reaction_norm()) {
+        const auto breakdown = model_.inspect(state_.u);
+        return breakdown ? std::make_optional(describe(*breakdown)) : std::nullopt;
+      }
+      advance(damping(sums), iteration == 0);
+    }
+    return fmt::format("not converged in {} iterations", settings_.max_iterations);
+  }
+
+  std::optional<Breakdown> evaluate() {
+    ++state_.evaluations;
+    if (auto breakdown = model_.internal_force(state_.u, force_)) return breakdown;
+    constraints_.reduce(force_);
+    return std::nullopt;
+  }
+
+  void set_masses() {
+    model_.stiffness_bound(state_.u, mass_);
+    constraints_.fold(mass_);
+    for (double& mass : mass_) mass *= 0.25;
+  }
+
+  /// Norm of the free force and the quotient for the damping. Slaves and padding hold zero force.
+  Sums sweep(bool first, const std::vector<double>& start) const {
+    return ordered_sum<Sums>(n_, [&](std::size_t begin, std::size_t end) {
+      Sums sums;
+      for (std::size_t i = begin; i < end; ++i) {
+        sums.force2 += force_[i] * force_[i];
+        if (first || mass_[i] == 0 || std::abs(velocity_[i]) < 1e-30) continue;
+        const double stiffness = -(force_[i] - old_force_[i]) / (mass_[i] * velocity_[i]);
+        const double moved = state_.u[i] - start[i];
+        sums.quotient_over += moved * stiffness * moved;
+        sums.quotient_under += moved * moved;
+      }
+      return sums;
+    });
+  }
+
+  static double damping(const Sums& sums) {
+    if (!(sums.quotient_over > 0) || !(sums.quotient_under > 0)) return 0;
+    return std::min(2 * std::sqrt(sums.quotient_over / sums.quotient_under), kLargestDamping);
+  }
+
+  void advance(double c, bool first) {
+    const double keep = first ? 0 : (2 - c) / (2 + c), push = first ? 0.5 : 2 / (2 + c);
+    const auto pieces = static_cast<std::ptrdiff_t>((n_ + kSumChunk - 1) / kSumChunk);
+    parallel_for(pieces, [&](std::ptrdiff_t p) {
+      const std::size_t begin = static_cast<std::size_t>(p) * kSumChunk, end = std::min(begin + kSumChunk, n_);
+      for (std::size_t i = begin; i < end; ++i) {
+        if (mass_[i] == 0) continue;
+        velocity_[i] = keep * velocity_[i] + push * force_[i] / mass_[i];
+        state_.u[i] += velocity_[i];
+      }
+    });
+    constraints_.apply(state_.u);
+  }
+
+  void balance() {
+    EnergyBalance& energy = state_.energy;
+    energy.strain = model_.strain_energy(state_.u);
+    energy.external_work += work_.since_last_call(constraints_, state_.parameter);
+    energy.largest = std::max({energy.largest, std::abs(energy.strain), std::abs(energy.external_work)});
+  }
+
+  void report(double target, long iteration, double residual) const {
+    observer_.progressed({target, settings_.start, settings_.targets.back(), state_.steps + 1, iteration, residual,
+                          settings_.tolerance});
+  }
+
+  static std::string describe(const Breakdown& breakdown) {
+    return fmt::format("{} at ({:.4g}, {:.4g}, {:.4g}) m", breakdown.what, breakdown.position[0],
+                       breakdown.position[1], breakdown.position[2]);
+  }
+
+  Model& model_;
+  Constraints& constraints_;
+  const DynamicRelaxationSettings& settings_;
+  Observer& observer_;
+  std::size_t n_;
+  State state_;
+  ParabolicWork work_;
+  std::vector<double> force_, old_force_, velocity_, mass_;
+  std::vector<double> before_;   // state one load step back
+  double last_change_ = 0;       // of the parameter in the last load step
+  int good_steps_ = 0;           // since the last cut
+};
+
+}  // namespace
+
+State relax(Model& model, Constraints& constraints, const DynamicRelaxationSettings& settings, Observer& observer) {
+  return Relaxation(model, constraints, settings, observer).run();
+}
+
+}  // namespace riven

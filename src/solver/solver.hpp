@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "load/constraints.hpp"
+#include "model/model.hpp"
+
+namespace riven {
+
+/// Where the energy of a run is (J).
+struct EnergyBalance {
+  double kinetic = 0;
+  double strain = 0;
+  double dissipated = 0;
+  double external_work = 0;
+  double largest = 0;  // largest of the above so far, the scale of the error
+
+  [[nodiscard]] double error() const {
+    return largest > 0 ? (kinetic + strain + dissipated - external_work) / largest : 0;
+  }
+};
+
+/// What a solver has reached.
+struct State {
+  double parameter = 1;      // stretch in statics, time (s) in dynamics
+  std::vector<double> u;     // displacements, the model's layout
+  std::vector<double> v;     // velocities; empty in statics
+  EnergyBalance energy;
+  long steps = 0;            // load or time steps
+  long evaluations = 0;      // of the force
+};
+
+/// What a solver is doing, for those who wait.
+struct Progress {
+  double parameter = 0;      // aimed at (statics) or reached
+  double begin = 0, end = 0; // of the whole run
+  long step = 0;
+  long iteration = 0;        // within the step
+  double residual = 0;       // free force / reaction; 0 in dynamics
+  double tolerance = 0;
+};
+
+/// Watches a run.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  /// Called often; must be cheap.
+  virtual void progressed(const Progress&) {}
+  /// A load step converged, or a history time was reached. `output`: this state is one the user asked for.
+  virtual void reached(const State&, const Constraints&, bool /*output*/) {}
+  /// Something the user should know while the run goes on.
+  virtual void remarked(const std::string&) {}
+};
+
+/// A solver could not go on: why, where it happened and what might help. The observers hold the last good state.
+class SolverFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace riven
