@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+
+namespace riven {
+
+/// A file that appears under its name only when it is complete: written to a hidden temporary beside it, then
+/// renamed. A program killed at any moment leaves the old file or the new one, never half of one.
+class AtomicFile {
+ public:
+  /// Throws RunError when the temporary cannot be created.
+  explicit AtomicFile(const std::filesystem::path& path);
+  /// Removes the temporary unless `commit` was called.
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  [[nodiscard]] std::ofstream& stream() { return stream_; }
+
+  /// Gives the file its name. Throws RunError when something could not be written (a full disk, say).
+  void commit();
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;
+  std::ofstream stream_;
+};
+
+}  // namespace riven

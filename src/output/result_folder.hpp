@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace riven {
+
+/// The folder of a run. It is prepared as a hidden folder beside its place and takes its name by `publish`,
+/// when the run is about to start: whatever fails before leaves nothing behind, and an older result
+/// untouched.
+class ResultFolder {
+ public:
+  /// Prepares the folder `path`. Throws InputError when it exists and `force` is not given, when `force`
+  /// would remove something that is not a result of Riven (a folder with `case.toml` and `resolved.toml`, or
+  /// an empty one), or when it cannot be created.
+  static ResultFolder create(const std::filesystem::path& path, bool force);
+
+  /// An existing result. Throws InputError when there is none at `path`.
+  static ResultFolder open(const std::filesystem::path& path);
+
+  /// Removes the prepared folder if it was not published.
+  ~ResultFolder();
+  ResultFolder(ResultFolder&& other) noexcept;
+  ResultFolder(const ResultFolder&) = delete;
+  ResultFolder& operator=(const ResultFolder&) = delete;
+
+  /// Writes `case.toml` (as the user wrote it) and `resolved.toml`, and gives the folder its name; an older
+  /// result is removed only now. Files that are open in it stay open; paths taken before no longer hold.
+  /// Throws RunError when the folder cannot be written, InputError when another run took the name meanwhile.
+  void publish(const std::string& case_text, const std::string& resolved_text);
+
+  /// Where the folder is now: hidden before `publish`, `path` after it.
+  [[nodiscard]] const std::filesystem::path& path() const { return current_; }
+  [[nodiscard]] std::filesystem::path case_file() const { return current_ / "case.toml"; }
+  [[nodiscard]] std::filesystem::path resolved() const { return current_ / "resolved.toml"; }
+  [[nodiscard]] std::filesystem::path log() const { return current_ / "riven.log"; }
+  [[nodiscard]] std::filesystem::path summary() const { return current_ / "summary.json"; }
+  [[nodiscard]] std::filesystem::path history() const { return current_ / "history.csv"; }
+  [[nodiscard]] std::filesystem::path collection() const { return current_ / "fields.pvd"; }
+  /// Field file of an output state, counted from 0, relative to the folder: "fields/0000.vtu".
+  [[nodiscard]] static std::filesystem::path field(int state);
+
+ private:
+  ResultFolder() = default;
+
+  std::filesystem::path target_;  // absolute
+  std::filesystem::path current_;
+  bool force_ = false;
+  bool published_ = false;
+};
+
+}  // namespace riven
