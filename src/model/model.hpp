@@ -17,7 +17,7 @@ struct Breakdown {
   std::string what;
 };
 
-/// A result per material point: `components` values each, point-major.
+/// A result per point: `components` values each (9: a tensor row by row), point-major, SI units.
 struct ModelField {
   std::string name;
   int components = 1;
@@ -52,8 +52,9 @@ class Model {
   /// Adds the displacement field gradient X + shift (m) to a state, everywhere: a first guess for solvers.
   virtual void move(std::span<double> u, const std::array<std::array<double, 3>, 3>& gradient, const Point& shift) const = 0;
 
-  /// Undeformed positions and fields of the material points, in one order.
+  /// Undeformed positions, displacements (m) and other results of the points that are shown, in one order.
   [[nodiscard]] virtual std::vector<Point> positions() const = 0;
+  [[nodiscard]] virtual std::vector<Point> displacements(std::span<const double> u) const = 0;
   [[nodiscard]] virtual std::vector<ModelField> fields(std::span<const double> u) = 0;
 
   /// Points, and directed bonds that one force evaluation visits.

@@ -24,7 +24,7 @@ Membrane::Membrane(LatticeBody body, Material material, double stabilisation)
     : body_(std::move(body)), material_(std::move(material)), stabilisation_(stabilisation) {
   if (body_.lattice.dimension() != 2) throw InputError("a membrane is two-dimensional: give the box two sizes and a thickness");
   const std::size_t n = body_.lattice.size();
-  for (auto* plane : {&kappa_, &mean_s2_, &mean_s4_, &energy_density_, &force_a_, &force_b_}) plane->assign(n, 0.0);
+  for (auto* plane : {&kappa_, &smallest_weight_, &mean_s2_, &mean_s4_, &energy_density_, &force_a_, &force_b_}) plane->assign(n, 0.0);
   for (auto& plane : coefficient_) plane.assign(n, 0.0);
   for (auto& plane : mean_gradient_) plane.assign(n, 0.0);
   for (auto& plane : force_n_) plane.assign(n, 0.0);
@@ -101,6 +101,7 @@ void Membrane::make_families() {
     const bool is_whole = size == body_.stencil.size() && !at_interface;
     FamilyWeights weights = is_whole && !whole.weight.empty() ? whole : moment_corrected_weights(unshortened_bonds_of(i));
     if (is_whole && whole.weight.empty()) whole = weights;
+    smallest_weight_[i] = weights.smallest_ratio;
     if (weights.kind == FamilyWeights::Kind::smooth && !at_interface) {
       for (std::size_t m = 0; m < kMoments; ++m) coefficient_[m][i] = weights.coefficients[m];
       continue;
@@ -127,7 +128,7 @@ Eigen::Vector2d Membrane::deformed(std::size_t point, const MembraneBond& bond, 
   if (bond.inclusion < 0) return bond.reference + Eigen::Vector2d(u[bond.neighbour], u[n + bond.neighbour]) - here;
   const auto inclusion = static_cast<std::size_t>(bond.inclusion);
   const std::size_t dof = inclusion_dof(inclusion);
-  return bond.reference + Eigen::Vector2d(u[dof], u[dof + 1]) + inclusions_[inclusion].rotation * bond.arm - bond.arm - here;
+  return bond.reference + inclusions_[inclusion].displacement(bond.arm, u, dof) - here;
 }
 
 Eigen::Vector2d Membrane::bond_force(const PointForce& law, const MembraneBond& bond, const Eigen::Vector2d& y) {
@@ -186,29 +187,51 @@ void Membrane::move(std::span<double> u, const std::array<std::array<double, 3>,
 
 std::vector<Point> Membrane::positions() const {
   std::vector<Point> positions;
-  positions.reserve(body_.points.size());
   for (const std::size_t i : body_.points) positions.push_back(body_.lattice.position(i));
+  for (const auto& inclusion : body_.rigid_points)
+    for (const std::size_t i : inclusion) positions.push_back(body_.lattice.position(i));
   return positions;
+}
+
+std::vector<Point> Membrane::displacements(std::span<const double> u) const {
+  std::vector<Point> displacements;
+  for (const std::size_t i : body_.points) displacements.push_back({u[i], u[body_.lattice.size() + i], 0});
+  for (std::size_t c = 0; c < inclusions_.size(); ++c) {
+    const std::size_t dof = inclusion_dof(c);
+    Inclusion inclusion = inclusions_[c];
+    inclusion.rotation = Eigen::Rotation2Dd(u[dof + 2] / inclusion.gyration);
+    for (const std::size_t i : body_.rigid_points[c]) {
+      const Eigen::Vector2d d = inclusion.displacement(plane(body_.lattice.position(i)) - inclusion.center, u, dof);
+      displacements.push_back({d.x(), d.y(), 0});
+    }
+  }
+  return displacements;
+}
+
+Eigen::Matrix2d Membrane::nominal_stress(std::size_t point, std::span<const double> u) const {
+  const PointForce law = point_force(point);
+  Eigen::Matrix2d stress = Eigen::Matrix2d::Zero();
+  for_each_bond(point, [&](const MembraneBond& bond) {
+    stress += bond_force(law, bond, deformed(point, bond, u)) * bond.reference.transpose();
+  });
+  return stress / body_.volume[point];
 }
 
 std::vector<ModelField> Membrane::fields(std::span<const double> u) {
   update_points(u);
-  const std::size_t n = body_.lattice.size();
-  ModelField displacement{"displacement", 3, {}}, damage{"damage", 1, {}}, energy{"strain_energy_density", 1, {}},
-      stress{"nominal_stress", 9, {}};
+  ModelField damage{"damage", 1, {}}, energy{"strain_energy_density", 1, {}}, stress{"nominal_stress", 9, {}},
+      weight{"weight_minimum", 1, {}};
   for (const std::size_t i : body_.points) {
-    displacement.values.insert(displacement.values.end(), {u[i], u[n + i], 0.0});
     damage.values.push_back(1.0 - static_cast<double>(body_.family_size(i)) / body_.whole_family[i]);
     energy.values.push_back(energy_density_[i]);
-    const PointForce law = point_force(i);
-    Eigen::Matrix2d p = Eigen::Matrix2d::Zero();
-    for_each_bond(i, [&](const MembraneBond& bond) {
-      p += bond_force(law, bond, deformed(i, bond, u)) * bond.reference.transpose();
-    });
-    p /= body_.volume[i];
+    weight.values.push_back(smallest_weight_[i]);
+    const Eigen::Matrix2d p = nominal_stress(i, u);
     stress.values.insert(stress.values.end(), {p(0, 0), p(0, 1), 0, p(1, 0), p(1, 1), 0, 0, 0, 0});
   }
-  return {displacement, damage, energy, stress};
+  const std::size_t shown = positions().size();
+  for (ModelField* field : {&damage, &energy, &stress, &weight})  // rigid points have none of these
+    field->values.resize(shown * static_cast<std::size_t>(field->components), 0.0);
+  return {std::move(damage), std::move(energy), std::move(stress), std::move(weight)};
 }
 
 /// Bounds of the second derivatives of a point's energy in its family sums, over the volume: by (a, b - 2 a0 a), a0 the

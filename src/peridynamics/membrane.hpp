@@ -49,12 +49,15 @@ class Membrane final : public Model {
   [[nodiscard]] std::optional<Breakdown> inspect(std::span<const double> u) override;
   void move(std::span<double> u, const std::array<std::array<double, 3>, 3>& gradient, const Point& shift) const override;
   [[nodiscard]] std::vector<Point> positions() const override;
+  [[nodiscard]] std::vector<Point> displacements(std::span<const double> u) const override;
   [[nodiscard]] std::vector<ModelField> fields(std::span<const double> u) override;
   [[nodiscard]] std::size_t points() const override { return body_.points.size(); }
   [[nodiscard]] std::size_t bonds() const override { return directed_bonds_; }
 
   [[nodiscard]] const LatticeBody& body() const { return body_; }
   [[nodiscard]] const Material& material() const { return material_; }
+  /// First Piola-Kirchhoff stress of a body point (Pa) in the state of the last force or energy evaluation.
+  [[nodiscard]] Eigen::Matrix2d nominal_stress(std::size_t point, std::span<const double> u) const;
   /// First of the three entries of an inclusion in a state.
   [[nodiscard]] std::size_t inclusion_dof(std::size_t inclusion) const;
 
@@ -75,6 +78,9 @@ class Membrane final : public Model {
     std::vector<MembraneBond> bonds;
   };
   struct Inclusion {
+    [[nodiscard]] Eigen::Vector2d displacement(const Eigen::Vector2d& arm, std::span<const double> u, std::size_t dof) const {
+      return Eigen::Vector2d(u[dof], u[dof + 1]) + rotation * arm - arm;
+    }
     Eigen::Vector2d center;
     double gyration = 0;  // radius of gyration (m)
     double mass = 0;      // kg
@@ -115,6 +121,7 @@ class Membrane final : public Model {
   using Plane = std::vector<double>;
   std::array<Plane, kMoments> coefficient_;     // of the angular functions; 0 for listed points
   Plane kappa_;                                 // modulus of the stabilisation (Pa)
+  Plane smallest_weight_;                       // of the family over its base weight, before any repair
   // Family averages <s^2>, <s^4>, <Y xi^T / |xi|^2>, then what follows from them; valid for one state.
   Plane mean_s2_, mean_s4_;
   std::array<Plane, 4> mean_gradient_;

@@ -191,8 +191,14 @@ class Relaxation {
   }
 
   void report(double target, long iteration, double residual) const {
-    observer_.progressed({target, settings_.start, settings_.targets.back(), state_.steps + 1, iteration, residual,
-                          settings_.tolerance});
+    observer_.progressed({.parameter = target,
+                          .reached = state_.parameter,
+                          .begin = settings_.start,
+                          .end = settings_.targets.back(),
+                          .step = state_.steps + 1,
+                          .iteration = iteration,
+                          .residual = residual,
+                          .tolerance = settings_.tolerance});
   }
 
   static std::string describe(const Breakdown& breakdown) {

@@ -34,8 +34,9 @@ struct State {
 };
 
 /// What a solver is doing, for those who wait.
-struct Progress {
-  double parameter = 0;      // aimed at (statics) or reached
+struct SolverProgress {
+  double parameter = 0;      // aimed at (statics) or reached (dynamics)
+  double reached = 0;        // by the last complete step
   double begin = 0, end = 0; // of the whole run
   long step = 0;
   long iteration = 0;        // within the step
@@ -48,7 +49,7 @@ class Observer {
  public:
   virtual ~Observer() = default;
   /// Called often; must be cheap.
-  virtual void progressed(const Progress&) {}
+  virtual void progressed(const SolverProgress&) {}
   /// A load step converged, or a history time was reached. `output`: this state is one the user asked for.
   virtual void reached(const State&, const Constraints&, bool /*output*/) {}
   /// Something the user should know while the run goes on.

@@ -79,7 +79,10 @@ class Verlet {
       const double dt = left / static_cast<double>(steps);
       const double begin = state_.parameter;
       for (long s = 1; s <= now; ++s) step(dt, s == steps ? event : begin + static_cast<double>(s) * dt);
-      observer_.progressed({state_.parameter, 0, settings_.until, state_.steps, 0, 0, 0});
+      observer_.progressed({.parameter = state_.parameter,
+                            .reached = state_.parameter,
+                            .end = settings_.until,
+                            .step = state_.steps});
       estimate_step();
       if (now < steps) check_energy_now();
     }

@@ -1,0 +1,239 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "load/mirror.hpp"
+#include "simulation/simulation.hpp"
+
+namespace riven {
+
+namespace {
+
+constexpr std::size_t kFaces = 6;
+
+InvariantLaw make_law(const MaterialInput& in) {
+  if (in.law == "neo-hookean") {
+    if (in.youngs_modulus) return NeoHookean{*in.youngs_modulus / 6};  // E = 3 mu, mu = 2 C10
+    if (in.shear_modulus) return NeoHookean{*in.shear_modulus / 2};
+    return NeoHookean{*in.c10};
+  }
+  if (in.law == "mooney-rivlin") return MooneyRivlin{*in.c10, *in.c01};
+  return Yeoh{*in.c10, in.c20.value_or(0), in.c30.value_or(0)};
+}
+
+Material make_material(const MaterialInput& in) {
+  const Material material{in.name, make_law(in), in.density};
+  if (!(shear_modulus(material.law) > 0))
+    throw InputError(in.at, fmt::format("material.{}: the shear modulus is {:g} Pa; expected a law with a positive one",
+                                        in.name, shear_modulus(material.law)));
+  return material;
+}
+
+Defects make_defects(const Case& in) {
+  struct Placed {
+    const Shape& shape;
+    const Location& at;
+  };
+  Defects defects;
+  std::vector<Placed> placed;
+  for (const HoleInput& hole : in.holes) {
+    defects.holes.push_back(hole.shape);
+    placed.push_back({hole.shape, hole.at});
+  }
+  for (const InclusionInput& inclusion : in.inclusions) {
+    defects.inclusions.push_back(inclusion.shape);
+    placed.push_back({inclusion.shape, inclusion.at});
+  }
+  for (const CrackInput& crack : in.cracks) defects.cracks.push_back(crack.segment);
+  const double touch = 1e-6 * in.geometry.lattice.spacing;
+  for (std::size_t a = 0; a < placed.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      if (overlap(placed[a].shape, placed[b].shape, touch))
+        throw InputError(placed[a].at, fmt::format("this shape overlaps the one at {}; expected holes and inclusions apart "
+                                                   "from each other",
+                                                   placed[b].at.text()));
+  return defects;
+}
+
+/// Faces that some load displaces.
+Faces loaded_faces(const Case& in) {
+  Faces faces;
+  for (const LoadInput& load : in.loads)
+    for (const Named& name : load.on)
+      if (const auto face = Simulation::face(name.text)) faces.set(*face);
+  return faces;
+}
+
+LatticeBody make_body(const Case& in) {
+  const LatticeInput& lattice = in.geometry.lattice;
+  try {
+    return make_lattice_body({.dimension = lattice.dimension,
+                              .shape = lattice.shape,
+                              .thickness = lattice.thickness,
+                              .spacing = lattice.spacing,
+                              .horizon = in.geometry.horizon,
+                              .defects = make_defects(in),
+                              .mirrored = loaded_faces(in)});
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    if (what.starts_with(in.file.string())) throw;
+    throw InputError(lattice.at, "geometry: " + what);
+  }
+}
+
+PointSet make_set(const SetInput& in, const LatticeBody& body) {
+  PointSet set{in.name, {}};
+  const double touch = 1e-9 * body.lattice.spacing();
+  for (const std::size_t i : body.points) {
+    const Point x = body.lattice.position(i);
+    const bool inside = in.where ? (*in.where)(Variables{.position = x}) != 0 : signed_distance(*in.shape, x) <= touch;
+    if (inside) set.points.push_back(i);
+  }
+  if (set.points.empty())
+    throw InputError(in.at, fmt::format("set.{}: the set is empty; expected at least one of the body's {} points in it",
+                                        in.name, body.points.size()));
+  return set;
+}
+
+LoadFunction make_function(const Expression& expression, Parameter parameter) {
+  if (parameter == Parameter::time)
+    return [expression](const Point& x, double t) { return expression(Variables{.position = x, .t = t}); };
+  return [expression](const Point& x, double stretch) {
+    return expression(Variables{.position = x, .stretch = stretch});
+  };
+}
+
+/// Turns loads into constraints on the state of the model.
+class LoadBuilder {
+ public:
+  explicit LoadBuilder(Simulation& simulation)
+      : simulation_(simulation),
+        body_(simulation.model->body()),
+        loaded_(simulation.model->dofs(), false) {}
+
+  void build() {
+    for (const LoadInput& load : simulation_.input.loads)
+      for (const Named& on : load.on) {
+        if (const auto face = Simulation::face(on.text)) {
+          displace_face(load, *face, on);
+        } else {
+          displace_set(load, on);
+        }
+      }
+    for (std::size_t face = 0; face < kFaces; ++face) check_face(face);
+    add_mirror_constraints(body_, faces_, body_.lattice.size(), *simulation_.constraints);
+    hold_fixed_inclusions();
+  }
+
+ private:
+  void displace_face(const LoadInput& load, std::size_t face, const Named& on) {
+    if (!faces_[face]) faces_[face] = FaceLoad{.displacement = {}, .load = face};
+    face_at_[face] = on.at;
+    for (std::size_t axis = 0; axis < load.displacement.size(); ++axis) {
+      const auto& value = load.displacement[axis].value;
+      if (!value) continue;
+      auto& given = faces_[face]->displacement[axis];
+      if (given) throw InputError(on.at, fmt::format("load: component {} of the edge \"{}\" is displaced twice", axis, on.text));
+      given = make_function(*value, simulation_.parameter);
+    }
+  }
+
+  /// Mirror layers hold the normal component; a tangential one alone would hold the edge's normal strain at zero.
+  void check_face(std::size_t face) const {
+    if (!faces_[face] || faces_[face]->displacement[face / 2]) return;
+    throw InputError(face_at_[face],
+                     fmt::format("load: the edge \"{}\" is displaced along itself only; expected its normal component too "
+                                 "(component {} of displacement), or a set of points instead of the edge",
+                                 kFaceNames[face], face / 2));
+  }
+
+  void displace_set(const LoadInput& load, const Named& on) {
+    const PointSet& set = simulation_.set(on.text);
+    const std::size_t number = simulation_.load_number(on.text);
+    for (std::size_t axis = 0; axis < load.displacement.size(); ++axis) {
+      const auto& value = load.displacement[axis].value;
+      if (!value) continue;
+      const LoadFunction function = make_function(*value, simulation_.parameter);
+      for (const std::size_t point : set.points) {
+        const std::size_t dof = axis * body_.lattice.size() + point;
+        if (loaded_[dof])
+          throw InputError(on.at, fmt::format("load: points of \"{}\" are displaced twice; expected sets without common "
+                                              "points, or other components free",
+                                              on.text));
+        loaded_[dof] = true;
+        simulation_.constraints->add(
+            {.slave = dof,
+             .terms = {{function, body_.lattice.position(point), static_cast<int>(axis), 1, number}}});
+      }
+    }
+  }
+
+  void hold_fixed_inclusions() {
+    const std::size_t number = kFaces + simulation_.sets.size();
+    for (std::size_t n = 0; n < simulation_.input.inclusions.size(); ++n) {
+      if (simulation_.input.inclusions[n].motion != "fixed") continue;
+      for (std::size_t d = 0; d < 3; ++d) {
+        Constraint constraint{.slave = simulation_.model->inclusion_dof(n) + d, .terms = {}};
+        if (d < 2)
+          constraint.terms.push_back({[](const Point&, double) { return 0.0; }, Point{}, static_cast<int>(d), 1, number});
+        simulation_.constraints->add(std::move(constraint));
+      }
+    }
+  }
+
+  Simulation& simulation_;
+  const LatticeBody& body_;
+  std::array<std::optional<FaceLoad>, kFaces> faces_;
+  std::array<Location, kFaces> face_at_;
+  std::vector<bool> loaded_;  // entries that a set's load has taken
+};
+
+}  // namespace
+
+std::optional<std::size_t> Simulation::face(const std::string& name) {
+  const auto found = std::find(kFaceNames.begin(), kFaceNames.end(), name);
+  if (found == kFaceNames.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - kFaceNames.begin());
+}
+
+const PointSet& Simulation::set(const std::string& name) const {
+  const auto found = std::find_if(sets.begin(), sets.end(), [&](const PointSet& s) { return s.name == name; });
+  if (found == sets.end()) throw InputError(fmt::format("no set is called \"{}\"", name));
+  return *found;
+}
+
+std::size_t Simulation::load_number(const std::string& name) const {
+  if (const auto number = face(name)) return *number;
+  return kFaces + static_cast<std::size_t>(&set(name) - sets.data());
+}
+
+double Simulation::face_area(std::size_t face) const {
+  const LatticeBody& body = model->body();
+  double area = body.thickness;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(body.lattice.dimension()); ++axis)
+    if (axis != face / 2) area *= body.lattice.cells()[axis] * body.lattice.spacing();
+  return area;
+}
+
+Simulation build_simulation(const Case& input) {
+  Simulation simulation;
+  simulation.input = input;
+  simulation.parameter = input.solver.method == "verlet" ? Parameter::time : Parameter::stretch;
+  LatticeBody body = make_body(input);
+  for (const SetInput& set : input.sets) simulation.sets.push_back(make_set(set, body));
+  try {
+    simulation.model = std::make_unique<Membrane>(std::move(body), make_material(input.materials.front()),
+                                                  input.model.stabilisation);
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    if (what.starts_with(input.file.string())) throw;
+    throw InputError(input.model.at, "model: " + what);
+  }
+  simulation.constraints =
+      std::make_unique<Constraints>(simulation.model->dofs(), kFaces + simulation.sets.size() + 1);
+  LoadBuilder(simulation).build();
+  return simulation;
+}
+
+}  // namespace riven

@@ -1,0 +1,105 @@
+#include "simulation/probes.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "verification/interpolation.hpp"
+
+namespace riven {
+
+namespace {
+
+constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+
+/// Displacements anywhere in the body at one state.
+class DisplacementField {
+ public:
+  DisplacementField(const Membrane& model, std::span<const double> u)
+      : positions_(model.positions()),
+        displacements_(model.displacements(u)),
+        interpolation_(positions_, displacements_, model.body().defects, model.body().lattice.spacing(),
+                       model.body().horizon) {}
+
+  [[nodiscard]] Point at(const Point& place, const ProbeInput& probe) const {
+    const auto displacement = interpolation_.at(place);
+    if (!displacement)
+      throw InputError(probe.at, fmt::format("probe {}: there is no material at ({:g}, {:g}, {:g}) m", probe.name,
+                                             place[0], place[1], place[2]));
+    return *displacement;
+  }
+
+ private:
+  std::vector<Point> positions_;
+  std::vector<Point> displacements_;
+  Interpolation interpolation_;
+};
+
+double distance_between(const Point& a, const Point& b) {
+  return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+}
+
+Point moved(const Point& x, const Point& u) { return {x[0] + u[0], x[1] + u[1], x[2] + u[2]}; }
+
+}  // namespace
+
+Probes::Probes(const Simulation& simulation) : simulation_(simulation) {
+  for (const ProbeInput& probe : simulation.input.probes) add_columns(probe);
+  const std::vector<double> rest(simulation.model->dofs(), 0.0);
+  const DisplacementField field(*simulation.model, rest);
+  for (const ProbeInput& probe : simulation.input.probes)
+    for (const auto& place : {probe.position, probe.from, probe.to})
+      if (place) static_cast<void>(field.at(*place, probe));
+}
+
+void Probes::add_columns(const ProbeInput& probe) {
+  const auto dimension = static_cast<std::size_t>(simulation_.model->body().lattice.dimension());
+  const auto vector = [&](const std::string& name, const std::string& unit) {
+    for (std::size_t a = 0; a < dimension; ++a) columns_.push_back({name + "_" + kAxes[a], unit});
+  };
+  if (probe.kind == "reaction") vector(probe.name, "N");
+  if (probe.kind == "nominal-stress" && Simulation::face(probe.on.text)) vector(probe.name, "Pa");
+  if (probe.kind == "nominal-stress" && !Simulation::face(probe.on.text))
+    for (const char* component : {"_xx", "_xy", "_yx", "_yy"}) columns_.push_back({probe.name + component, "Pa"});
+  if (probe.kind == "displacement") vector("displacement_" + probe.name, "m");
+  if (probe.kind == "stretch") columns_.push_back({probe.name, ""});
+}
+
+std::vector<double> Probes::evaluate(const State& state, const Constraints& constraints) const {
+  const Membrane& model = *simulation_.model;
+  const auto dimension = static_cast<std::size_t>(model.body().lattice.dimension());
+  const DisplacementField field(model, state.u);
+  std::vector<double> values;
+  const auto add = [&](const Point& vector, double divisor) {
+    for (std::size_t a = 0; a < dimension; ++a) values.push_back(vector[a] / divisor);
+  };
+  for (const ProbeInput& probe : simulation_.input.probes) {
+    const auto face = Simulation::face(probe.on.text);
+    if (probe.kind == "reaction") add(constraints.reaction(simulation_.load_number(probe.on.text)), 1);
+    if (probe.kind == "nominal-stress" && face) add(constraints.reaction(*face), simulation_.face_area(*face));
+    if (probe.kind == "nominal-stress" && !face) {
+      Eigen::Matrix2d stress = Eigen::Matrix2d::Zero();
+      double volume = 0;
+      for (const std::size_t i : simulation_.set(probe.on.text).points) {
+        stress += model.body().volume[i] * model.nominal_stress(i, state.u);
+        volume += model.body().volume[i];
+      }
+      stress /= volume;
+      values.insert(values.end(), {stress(0, 0), stress(0, 1), stress(1, 0), stress(1, 1)});
+    }
+    if (probe.kind == "displacement") add(field.at(*probe.position, probe), 1);
+    if (probe.kind == "stretch")
+      values.push_back(distance_between(moved(*probe.from, field.at(*probe.from, probe)),
+                                        moved(*probe.to, field.at(*probe.to, probe))) /
+                       distance_between(*probe.from, *probe.to));
+  }
+  return values;
+}
+
+Metrics Probes::metrics(const std::vector<double>& values) const {
+  Metrics metrics;
+  for (std::size_t n = 0; n < columns_.size(); ++n) metrics[columns_[n].name] = {values[n], columns_[n].unit};
+  return metrics;
+}
+
+}  // namespace riven
