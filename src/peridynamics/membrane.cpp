@@ -16,6 +16,10 @@ namespace {
 // Where the family is cut, short waves are held by fewer bonds and a full stabilisation would stiffen edges (5a, 5).
 constexpr double kCutFamilyStabilisation = 0.1;
 
+// Determinant of a family's shape tensor (trace 1) below which all its bonds lie on one line: two of a lattice's bonds that
+// do not have one of 0.02 and more.
+constexpr double kFlatFamily = 1e-4;
+
 Eigen::Vector2d plane(const Point& p) { return {p[0], p[1]}; }
 
 }  // namespace
@@ -116,6 +120,10 @@ void Membrane::make_families() {
       family.bonds[j].weight = weights.weight[j];
       const Eigen::Vector2d n = family.bonds[j].reference.normalized();
       shape += weights.weight[j] * n * n.transpose();
+    }
+    if (family.by_gradient && shape.determinant() < kFlatFamily) {
+      family.by_gradient = false;  // no weights, no gradient: the point hangs on its neighbours' forces alone
+      family.bonds.clear();
     }
     if (family.by_gradient) family.inverse_shape = shape.inverse();
     listed_index_[i] = static_cast<std::ptrdiff_t>(listed_.size());
@@ -228,7 +236,8 @@ std::vector<ModelField> Membrane::fields(std::span<const double> u) {
   ModelField damage{"damage", 1, {}}, energy{"strain_energy_density", 1, {}}, stress{"nominal_stress", 9, {}},
       weight{"weight_minimum", 1, {}};
   for (const std::size_t i : body_.points) {
-    damage.values.push_back(1.0 - static_cast<double>(body_.family_size(i)) / body_.whole_family[i]);
+    const double whole = body_.whole_family[i];  // 0 for a point that holes have cut off from all others
+    damage.values.push_back(whole > 0 ? 1 - static_cast<double>(body_.family_size(i)) / whole : 0);
     energy.values.push_back(energy_density_[i]);
     weight.values.push_back(smallest_weight_[i]);
     const Eigen::Matrix2d p = nominal_stress(i, u);

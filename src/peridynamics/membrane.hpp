@@ -76,7 +76,7 @@ class Membrane final : public Model {
     bool by_least_squares = false;
     bool by_gradient = false;
     Eigen::Matrix2d inverse_shape = Eigen::Matrix2d::Zero();  // (sum w n n^T)^-1, for by_gradient
-    std::vector<MembraneBond> bonds;
+    std::vector<MembraneBond> bonds;  // none: all lie on one line, so the point has no strain energy of its own
   };
   struct Inclusion {
     [[nodiscard]] Eigen::Vector2d displacement(const Eigen::Vector2d& arm, std::span<const double> u, std::size_t dof) const {

@@ -90,7 +90,7 @@ void Membrane::respond_row(const Law& law, std::size_t row) {
   for (std::size_t i = begin; i < begin + body_.lattice.row_length(); ++i) {
     if (coefficient_[0][i] == 0) continue;  // no body point, or a listed one
     const double a = mean_s2_[i], b = mean_s4_[i];
-    if (!(area_ratio_squared(a, b) >= kCollapse * a * a)) {
+    if (!(area_ratio_squared(a, b) > kCollapse * a * a)) {
       if (collapsed_in_row_[row] < 0) collapsed_in_row_[row] = static_cast<std::ptrdiff_t>(i);
       continue;
     }
@@ -123,6 +123,11 @@ PointForce Membrane::point_force(std::size_t point) const {
 
 void Membrane::respond_listed(const ListedFamily& family, std::span<const double> u) {
   const std::size_t i = family.point;
+  if (family.bonds.empty()) {
+    mean_s2_[i] = mean_s4_[i] = 1;
+    for (std::size_t c = 0; c < 4; ++c) mean_gradient_[c][i] = c % 3 == 0 ? 0.5 : 0;
+    return set_point(i, 0, {});
+  }
   double a = 0, b = 0;
   Eigen::Matrix2d m = Eigen::Matrix2d::Zero();
   for (const MembraneBond& bond : family.bonds) {
@@ -159,7 +164,7 @@ std::optional<Breakdown> Membrane::first_collapsed() const {
     if (i >= 0) return breakdown(static_cast<std::size_t>(i));
   for (const ListedFamily& family : listed_) {
     const double a = mean_s2_[family.point], b = mean_s4_[family.point];
-    if (!(area_ratio_squared(a, b) >= kCollapse * a * a)) return breakdown(family.point);
+    if (!(area_ratio_squared(a, b) > kCollapse * a * a)) return breakdown(family.point);
   }
   return std::nullopt;
 }
