@@ -104,8 +104,14 @@ FamilyWeights moment_corrected_weights(std::span<const PlaneBond> bonds) {
       family.coefficients[m] = c(static_cast<Eigen::Index>(m)) / scale;  // of 1/length itself
   } else {
     weight = bounded_weights(phi, w0);
-    family.kind = FamilyWeights::Kind::listed;
-    if (moment_error() > kMomentTolerance) {
+    if (moment_error() <= kMomentTolerance) {
+      family.kind = FamilyWeights::Kind::listed;
+      // The penalty leaves 1e-10 in the moments, and a force at rest; what is free to move takes that away.
+      const VectorXd free = weight - kSmallestRatio * w0;
+      const MatrixXd system = phi * free.asDiagonal() * phi.transpose();
+      const VectorXd missing = target - phi * weight;
+      weight += free.cwiseProduct(phi.transpose() * system.completeOrthogonalDecomposition().solve(missing));
+    } else {
       weight = w0;
       family.kind = FamilyWeights::Kind::gradient;
     }
