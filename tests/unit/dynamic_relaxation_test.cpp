@@ -1,0 +1,119 @@
+#include "solver/dynamic_relaxation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/bodies.hpp"
+#include "support/laws.hpp"
+#include "support/loads.hpp"
+#include "support/states.hpp"
+
+namespace riven::testing {
+namespace {
+
+constexpr double kStabilisation = 4;
+
+struct Log : Observer {
+  void reached(const State& state, const Constraints&, bool output) override {
+    steps.push_back(state.parameter);
+    if (output) outputs.push_back(state.parameter);
+  }
+  void remarked(const std::string& remark) override { remarks.push_back(remark); }
+  std::vector<double> steps, outputs;
+  std::vector<std::string> remarks;
+};
+
+/// A sheet with a hole and a held inclusion.
+struct Problem {
+  explicit Problem(const LawCase& law, const FaceLoads& loads = planar(), Faces mirrored = all_edges())
+      : membrane(make_lattice_body(sheet(20, 20, 0.05, mirrored,
+                                         {{Disc{{0.2, 0.15, 0}, 0.13}}, {}, {Disc{{-0.2, -0.2, 0}, 0.1}}})),
+                 law.material(), kStabilisation),
+        constraints(constrain(membrane, loads)) {}
+
+  State solve(const DynamicRelaxationSettings& settings) {
+    return relax(membrane, constraints, settings, log);
+  }
+
+  Membrane membrane;
+  Constraints constraints;
+  Log log;
+};
+
+double distance(const State2& a, const State2& b) {
+  double worst = 0;
+  for (std::size_t e = 0; e < a.size(); ++e) worst = std::max(worst, std::abs(a[e] - b[e]));
+  return worst;
+}
+
+TEST(DynamicRelaxation, ReachesEquilibriumWithinItsTolerance) {
+  for (const LawCase& law : unit_laws()) {
+    Problem problem(law);
+    const State state = problem.solve({.targets = {1.1, 1.25}, .tolerance = 1e-6});
+    EXPECT_EQ(problem.log.outputs, (std::vector<double>{1.1, 1.25})) << law.name;
+    problem.constraints.set_parameter(1.25);
+    State2 u = state.u;
+    problem.constraints.apply(u);
+    EXPECT_EQ(u, state.u);  // the state obeys its loads
+    State2 force = force_of(problem.membrane, u);
+    problem.constraints.reduce(force);
+    EXPECT_LE(norm(force), 1e-6 * problem.constraints.reaction_norm());
+    EXPECT_GT(problem.constraints.reaction(1)[0], 0);
+    EXPECT_NEAR(state.energy.strain, problem.membrane.strain_energy(u), 1e-15);
+    // The work is integrated along steps of 0.1 by parabolas; measured 1.4e-3.
+    EXPECT_LT(std::abs(state.energy.error()), 3e-3);
+  }
+}
+
+TEST(DynamicRelaxation, ResultDoesNotDependOnTheIncrement) {
+  std::vector<State2> results;
+  std::vector<double> forces;
+  for (const double increment : {0.1, 0.05}) {
+    Problem problem(unit_laws()[1]);
+    results.push_back(problem.solve({.targets = {1.4}, .increment = increment, .tolerance = 1e-7}).u);
+    forces.push_back(problem.constraints.reaction(1)[0]);
+  }
+  // The tolerance on the force, 1e-7, times the softness of the slowest motion. Measured: 3e-8 m and 1.4e-7.
+  EXPECT_LT(distance(results[0], results[1]), 1e-6);
+  EXPECT_NEAR(forces[0] / forces[1], 1, 1e-6);
+}
+
+TEST(DynamicRelaxation, CutsStepsThatAreTooLarge) {
+  Problem small(unit_laws()[0]), large(unit_laws()[0]);
+  const State2 expected = small.solve({.targets = {1.8}, .increment = 0.05, .tolerance = 1e-7}).u;
+  // One step of 0.8 from the affine motion about the inclusion folds the sheet or takes too long.
+  const State state =
+      large.solve({.targets = {1.8}, .increment = 0.8, .tolerance = 1e-7, .max_iterations = 400});
+  ASSERT_FALSE(large.log.remarks.empty());
+  EXPECT_NE(large.log.remarks[0].find("going on with steps of"), std::string::npos);
+  EXPECT_EQ(large.log.steps.back(), 1.8);
+  EXPECT_LT(distance(state.u, expected), 1e-6);  // as for two increments; 8e-8 measured
+}
+
+TEST(DynamicRelaxation, GivesUpOnAnImpossibleLoad) {
+  // The sheet is pressed to nothing: it folds long before.
+  Problem problem(unit_laws()[0], equibiaxial());
+  try {
+    problem.solve({.targets = {0.9, 0.01}, .tolerance = 1e-3, .max_iterations = 500});
+    FAIL() << "no failure";
+  } catch (const SolverFailure& failure) {
+    const std::string what = failure.what();
+    EXPECT_NE(what.find("no equilibrium beyond"), std::string::npos) << what;
+    EXPECT_NE(what.find("solver.increment"), std::string::npos) << what;
+  }
+  EXPECT_FALSE(problem.log.remarks.empty());
+}
+
+TEST(DynamicRelaxation, StretchesAUniformSheetExactly) {
+  // Mirror layers and weights are exact for homogeneous states, so the first residual is the last.
+  const LawCase& law = unit_laws()[1];
+  Membrane membrane(make_lattice_body(sheet(16, 12, 0.05, all_edges())), law.material(), kStabilisation);
+  Constraints constraints = constrain(membrane, planar());
+  Log log;
+  const State state = relax(membrane, constraints, {.targets = {1.7}}, log);
+  const State2 exact = affine_state(membrane, Eigen::Matrix2d{{1.7, 0}, {0, 1}});
+  EXPECT_LT(distance(state.u, exact), 1e-12);
+  EXPECT_EQ(state.evaluations, state.steps);
+}
+
+}  // namespace
+}  // namespace riven::testing
