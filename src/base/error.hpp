@@ -15,8 +15,9 @@ struct Location {
   /// "file:line:column", leaving out what is unknown.
   [[nodiscard]] std::string text() const {
     std::string place = file;
-    if (line > 0) place += ":" + std::to_string(line);
-    if (line > 0 && column > 0) place += ":" + std::to_string(column);
+    // Piece by piece: g++ 12 wrongly sees an overlap in ":" + std::to_string(line).
+    if (line > 0) place.append(":").append(std::to_string(line));
+    if (line > 0 && column > 0) place.append(":").append(std::to_string(column));
     return place;
   }
 };
