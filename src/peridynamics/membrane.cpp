@@ -109,6 +109,7 @@ void Membrane::make_families() {
     ListedFamily family;
     family.point = i;
     family.by_gradient = weights.kind == FamilyWeights::Kind::gradient;
+    family.by_least_squares = weights.kind == FamilyWeights::Kind::listed;
     family.bonds = bonds_of(i);
     Eigen::Matrix2d shape = Eigen::Matrix2d::Zero();
     for (std::size_t j = 0; j < family.bonds.size(); ++j) {
@@ -139,6 +140,12 @@ Eigen::Vector2d Membrane::bond_force(const PointForce& law, const MembraneBond& 
 std::size_t Membrane::dofs() const { return 2 * body_.lattice.size() + 3 * inclusions_.size(); }
 
 std::size_t Membrane::inclusion_dof(std::size_t inclusion) const { return 2 * body_.lattice.size() + 3 * inclusion; }
+
+std::size_t Membrane::points_by_least_squares() const {
+  return static_cast<std::size_t>(std::count_if(listed_.begin(), listed_.end(), [](const ListedFamily& family) {
+    return family.by_least_squares;
+  }));
+}
 
 std::size_t Membrane::points_by_gradient() const {
   return static_cast<std::size_t>(

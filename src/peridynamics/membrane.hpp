@@ -73,6 +73,7 @@ class Membrane final : public Model {
   /// A point whose family does not follow the lattice's formula: repaired weights, bonds to inclusions.
   struct ListedFamily {
     std::size_t point = 0;
+    bool by_least_squares = false;
     bool by_gradient = false;
     Eigen::Matrix2d inverse_shape = Eigen::Matrix2d::Zero();  // (sum w n n^T)^-1, for by_gradient
     std::vector<MembraneBond> bonds;
