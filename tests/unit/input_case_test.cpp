@@ -182,7 +182,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"\"10 mm\"", "\"10 mmm\"", "4:52", "unknown unit \"mmm\""},
         Wrong{"\"10 mm\"", "\"10 MPa\"", "4:48", "is a pressure (Pa); expected a length, such as \"10 mm\""},
         Wrong{"\"10 mm\"", "\"-10 mm\"", "4:48", "found -0.01 m; expected a value above 0 m"},
-        Wrong{"\"10 mm\"", "\"1 mm / 0\"", "4:48", "expected a finite number"},
+        Wrong{"\"10 mm\"", "\"1 mm / 0\"", "4:48", "gives no finite number"},
         Wrong{"\"10 mm\"", "nan", "4", "expected a finite number"},
         Wrong{"\"10 mm\"", "true", "4", "found true; expected a length such as \"10 mm\""},
         Wrong{"\"10 mm\"", "\"3 dx\"", "4:51", "known only after"},
@@ -210,6 +210,9 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"< 100 mm", "< 100", "11:9", "do not fit together"},
         Wrong{"< 100 mm", "", "11", "true or false"},
         Wrong{"< 100 mm", "= 100 mm", "11:26", "does not compare"},
+        Wrong{"\"Membrane with a hole\"", "\"\"", "1:9", "title: found an empty text"},
+        Wrong{"(stretch - 1)*x", "sqrt(-1)*x", "23:17", "gives no finite number"},
+        Wrong{"< 100 mm", "< 100 mm &&", "11:9", "formula cannot be read: Unexpected end of expression"},
         Wrong{"[[hole]]", "[hole]", "7", "expected an array of tables, written [[hole]]"},
         Wrong{"disc = { radius", "disk = { radius", "8:1", "did you mean \"disc\"?"},
         Wrong{"at = 2", "at = \"2 ms\"", "42", "is a time (s); expected a number"}));
