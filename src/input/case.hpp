@@ -11,7 +11,7 @@
 
 namespace riven {
 
-/// What the user wrote, parsed and checked, in SI units. `src/input/case_format.*` declares the format.
+/// What the user wrote, parsed and checked, in SI units. `src/input/case_format.cpp` declares the format.
 
 struct LatticeInput {    // [geometry] box = {...} or disc = {...}
   Shape shape;           // the body; a box is centred at the origin unless `from` gives its lower corner

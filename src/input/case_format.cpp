@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <memory>
 #include <set>
 
@@ -291,17 +291,27 @@ Format describe(ProbeInput& p, const Case& c) {
           }};
 }
 
-void check_metric(const ExpectInput& e, const Check& check) {
+// The values of one expectation share a dimension; a plain 0 takes that of its companions.
+void unify_dimensions(ExpectInput& e, const Check& check) {
+  const std::array<std::pair<const char*, std::optional<AnyQuantity>*>, 4> all{
+      {{"value", &e.value}, {"absolute_tolerance", &e.absolute_tolerance}, {"min", &e.min}, {"max", &e.max}}};
+  const auto plain_zero = [](const AnyQuantity& q) { return q.si == 0 && q.dimension == "1"; };
+  std::string shared;
+  for (const auto& [key, quantity] : all) {
+    if (!*quantity || plain_zero(**quantity)) continue;
+    if (shared.empty()) shared = (*quantity)->dimension;
+    if ((*quantity)->dimension != shared)
+      check.fail(key, fmt::format("is in {}; expected {}, as its companion", (*quantity)->dimension, shared));
+  }
+  for (const auto& [key, quantity] : all)
+    if (*quantity && !shared.empty()) (*quantity)->dimension = shared;
+}
+
+void check_metric(ExpectInput& e, const Check& check) {
   const bool range = e.min || e.max;
   if (!e.value && !range) check.fail("metric", "nothing to compare with; expected value, or min and max");
   if (e.value && range) check.fail("value", "given together with min or max; expected one of both");
-  for (const std::optional<AnyQuantity>* other : {&e.absolute_tolerance, &e.min, &e.max}) {
-    const std::optional<AnyQuantity>& first = e.value ? e.value : e.min;
-    if (*other && first && (*other)->dimension != first->dimension)
-      check.fail(
-          other == &e.absolute_tolerance ? "absolute_tolerance" : "max",
-          fmt::format("is in {}; expected {}, as its companion", (*other)->dimension, first->dimension));
-  }
+  unify_dimensions(e, check);
   if (e.min && e.max && e.min->si > e.max->si) check.fail("max", "is below min");
   if (range && (e.tolerance || e.absolute_tolerance)) check.fail("min", "min and max need no tolerance");
   if (e.value && e.value->si == 0 && e.tolerance)

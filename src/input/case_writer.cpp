@@ -14,6 +14,13 @@ std::string toml_string(const std::string& text) {
   return nlohmann::json(text).dump();
 }
 
+std::string toml_key(const std::string& name) {
+  const bool bare =
+      name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-") ==
+      std::string::npos;
+  return bare && !name.empty() ? name : toml_string(name);
+}
+
 std::string with_unit(double si, const std::string& unit) {
   if (unit == "1") return fmt::format("{}", si);
   // A unit cannot begin with a number: "2 /s", not "2 1/s".
@@ -129,7 +136,7 @@ class CaseWriter {
         write_section(fmt::format("[[{}]]", path), tables->open(i), path);
     if (const auto* named = std::get_if<kind::NamedTables>(&key.kind))
       for (std::size_t i = 0; i < named->count(); ++i) {
-        const std::string header = fmt::format("[{}.{}]", path, toml_string(named->name(i)));
+        const std::string header = fmt::format("[{}.{}]", path, toml_key(named->name(i)));
         write_section(header, named->open(i), path);
       }
   }

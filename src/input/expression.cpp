@@ -33,7 +33,9 @@ struct Expression::Compiled {
 Expression::Expression(std::string written, std::string formula, const Location& at) try
     : compiled_(std::make_shared<Compiled>(std::move(written), formula, at)) {
 } catch (const mu::ParserError& error) {
-  throw InputError(at, "expression cannot be read: " + error.GetMsg());
+  // muParser counts in the formula with SI numbers, which the user does not see.
+  const std::string message = error.GetMsg();
+  throw InputError(at, "formula cannot be read: " + message.substr(0, message.find(" at position")));
 }
 
 double Expression::operator()(const Variables& variables) const {

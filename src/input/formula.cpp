@@ -108,6 +108,12 @@ Expression compile(const FormulaText& formula, const Origin& origin) {
   }
 }
 
+void check_finite_somewhere(const Expression& value, const Origin& origin) {
+  for (const Variables& sample : samples())
+    if (std::isfinite(value(sample))) return;
+  origin.fail(fmt::format("\"{}\" gives no finite number; expected one", value.written()));
+}
+
 void check_dimension(const FormulaText& formula, const Expression& plain, const Dimension& wanted,
                      const Origin& origin) {
   std::optional<Dimension> found;
@@ -133,13 +139,6 @@ void check_dimension(const FormulaText& formula, const Expression& plain, const 
                           named(wanted), example));
 }
 
-double finite_constant(const Expression& value, const Origin& origin) {
-  const double si = value(Variables{});
-  if (!std::isfinite(si))
-    origin.fail(fmt::format("\"{}\" gives {}; expected a finite number", value.written(), si));
-  return si;
-}
-
 }  // namespace
 
 void Origin::fail(const std::string& message) const {
@@ -158,11 +157,8 @@ Expression parse_formula(const std::string& text, const Dimension& dimension, co
                          const Origin& origin) {
   const FormulaText formula(text, symbols, origin);
   Expression expression = compile(formula, origin);
+  check_finite_somewhere(expression, origin);
   check_dimension(formula, expression, dimension, origin);
-  bool constant = true;
-  for (const std::string& variable : symbols.variables)
-    constant = constant && !expression.depends_on(variable);
-  if (constant) finite_constant(expression, origin);
   return expression;
 }
 
@@ -187,11 +183,11 @@ Expression parse_condition(const std::string& text, const Symbols& symbols, cons
 Quantity parse_quantity(const std::string& text, const Symbols& symbols, const Origin& origin) {
   const FormulaText formula(text, symbols, origin);
   const Expression value = compile(formula, origin);
-  const double si = finite_constant(value, origin);
+  check_finite_somewhere(value, origin);
   const std::optional<Powers> powers = find_powers(formula, value, {true, true});
   const std::optional<Dimension> found = powers ? powers->whole() : std::nullopt;
   if (!found) origin.fail(fmt::format("\"{}\" joins quantities that do not fit together", text));
-  return {si, *found};
+  return {value(Variables{}), *found};
 }
 
 double parse_quantity(const std::string& text, const Dimension& dimension, const Symbols& symbols,

@@ -118,6 +118,8 @@ void Reader::read_key(const toml::table& table, const Key& key, const std::strin
     if (!key.applies_now())
       origin.fail(fmt::format("does not apply here; it belongs to {}, found \"{}\"", key.only->text(),
                               *key.only->value));
+    if (std::holds_alternative<kind::Text>(key.kind) && !key.fallback && node->value<std::string>() == "")
+      origin.fail("found an empty text; expected some letters");
     std::visit([&](const auto& to) { read_value(to, *node, origin); }, key.kind);
   } else if (key.needed_now()) {
     const std::string why = with(key.required_when && !key.is_required ? key.required_when : key.only);

@@ -53,7 +53,8 @@ Format describe_box(std::optional<Shape>& shape) {
   if (shape && std::holds_alternative<Box>(*shape)) {
     const Box& box = std::get<Box>(*shape);
     form->center = box.center;
-    for (std::size_t i = 0; i < 3; ++i) form->size[i] = 2 * box.half_size[i];
+    for (std::size_t i = 0; i < 3; ++i)
+      if (box.half_size[i] > 0) form->size[i] = 2 * box.half_size[i];  // a shape not read yet has none
   }
   return {.doc = "A rectangle or box parallel to the axes.",
           .keys = {Key{"size", Place{&form->size, positive}, "Its edges along the axes."}.required(),
