@@ -191,11 +191,13 @@ class Relaxation {
   }
 
   void report(double target, long iteration, double residual) const {
+    const double left = std::abs(settings_.targets.back() - state_.parameter) / settings_.increment;
     observer_.progressed({.parameter = target,
                           .reached = state_.parameter,
                           .begin = settings_.start,
                           .end = settings_.targets.back(),
                           .step = state_.steps + 1,
+                          .steps = state_.steps + std::max(1L, std::lround(std::ceil(left - 1e-9))),
                           .iteration = iteration,
                           .residual = residual,
                           .tolerance = settings_.tolerance});
