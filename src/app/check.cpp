@@ -32,14 +32,6 @@ void print_sets(const Simulation& simulation) {
   }
 }
 
-/// Bytes of the padded planes of doubles, the state vectors of the solver and the bits of the bonds.
-double memory_estimate(const Membrane& model) {
-  constexpr double kPlanes = 24, kStateVectors = 7;
-  const auto entries = static_cast<double>(model.body().lattice.size());
-  return 8 * (kPlanes * entries + kStateVectors * static_cast<double>(model.dofs())) +
-         static_cast<double>(model.body().stencil.size()) * entries / 8;
-}
-
 void print_model(Simulation& simulation) {
   Membrane& model = *simulation.model;
   const LatticeBody& body = model.body();
@@ -62,7 +54,9 @@ void print_model(Simulation& simulation) {
     fmt::print("# time: stable step {:.4g} s at rest, {:.0f} steps to the end\n", limit,
                solver.until / solver.step.value_or(solver.safety * limit));
   }
-  fmt::print("# memory: about {:.0f} MB\n", 30 + 1e-6 * memory_estimate(model));
+  constexpr double kProgram = 30e6, kStateVectors = 7;  // bytes of the empty program; vectors that solvers keep
+  fmt::print("# memory: about {:.0f} MB\n",
+             1e-6 * (kProgram + static_cast<double>(model.bytes()) + 8 * kStateVectors * static_cast<double>(model.dofs())));
 }
 
 std::vector<std::string> warnings(const Simulation& simulation) {
