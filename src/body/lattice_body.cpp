@@ -66,18 +66,15 @@ class CellFiller {
     body_.lattice.for_each_cell([&](const Cell& cell, std::size_t i) {
       if (!body_.lattice.inside(cell)) return;
       const Point x = body_.lattice.position(cell);
+      const double fraction = material_fraction(x);
       if (const auto inclusion = rigid_inclusion(x)) {
         body_.kind[i] = PointKind::rigid;
         body_.rigid_points[*inclusion].push_back(i);
-        return;
-      }
-      const double fraction = material_fraction(x);
-      if (fraction >= kKeptFraction) {
+      } else if (fraction >= kKeptFraction) {
         body_.kind[i] = PointKind::body;
         body_.volume[i] = std::min(fraction, 1.0) * cell_volume;
-      } else if (fraction > 0) {
-        removed.emplace_back(cell, fraction * cell_volume);
       }
+      if (body_.kind[i] != PointKind::body && fraction > 0) removed.emplace_back(cell, fraction * cell_volume);
     });
     for (const auto& [cell, volume] : removed) share_with_nearest(cell, volume);
   }
@@ -91,7 +88,8 @@ class CellFiller {
 
   [[nodiscard]] double material_fraction(const Point& x) const {
     double fraction = covered_fraction(in_.shape, x, in_.spacing, in_.dimension);
-    for (const Shape& hole : in_.defects.holes) fraction -= covered_fraction(hole, x, in_.spacing, in_.dimension);
+    for (const auto* shapes : {&in_.defects.holes, &in_.defects.inclusions})
+      for (const Shape& shape : *shapes) fraction -= covered_fraction(shape, x, in_.spacing, in_.dimension);
     return fraction;
   }
 

@@ -11,126 +11,126 @@
 
 namespace riven {
 
-/// What the user wrote, parsed and checked, in SI units. `src/input/case_format.*` declares the format.
+/// What the user wrote, parsed and checked, in SI units. `src/input/case_format.cpp` declares the format.
 
-struct LatticeInput {            // [geometry] box = {...} or disc = {...}
-  Shape shape;                   // the body; a box is centred at the origin unless `from` gives its lower corner
-  int dimension = 2;             // number of entries of the box's size; 2 for a disc with a thickness
-  double thickness = 1;          // m (2D), or m^2 (1D: key `area`)
-  double spacing = 0;            // m
+struct LatticeInput {    // [geometry] box = {...} or disc = {...}
+  Shape shape;           // the body; a box is centred at the origin unless `from` gives its lower corner
+  int dimension = 2;     // number of entries of the box's size; 2 for a disc with a thickness
+  double thickness = 1;  // m (2D), or m^2 (1D: key `area`)
+  double spacing = 0;    // m
   Location at;
 };
 
 struct GeometryInput {
   LatticeInput lattice;
-  double horizon = 0;            // m
+  double horizon = 0;  // m
   Location horizon_at;
 };
 
-struct HoleInput {               // [[hole]]
+struct HoleInput {  // [[hole]]
   Shape shape;
   Location at;
 };
 
-struct CrackInput {              // [[crack]]
+struct CrackInput {  // [[crack]]
   Segment segment;
   Location at;
 };
 
-struct InclusionInput {          // [[inclusion]]: rigid and bonded to the body
-  std::string name;              // default inclusion-1, inclusion-2, ...
+struct InclusionInput {  // [[inclusion]]: rigid and bonded to the body
+  std::string name;      // default inclusion-1, inclusion-2, ...
   Shape shape;
-  std::string motion = "free";   // "free": moves with the body around it; "fixed"
+  std::string motion = "free";  // "free": moves with the body around it; "fixed"
   Location at;
 };
 
-struct SetInput {                // [set.NAME]: exactly one of where and a shape
+struct SetInput {  // [set.NAME]: exactly one of where and a shape
   std::string name;
   std::optional<Expression> where;
   std::optional<Shape> shape;
   Location at;
 };
 
-struct ModelInput {              // [model]
+struct ModelInput {  // [model]
   std::string kind = "membrane";
-  double stabilisation = 4;      // factor G of the stabilisation energy; 0 switches it off
+  double stabilisation = 4;  // factor G of the stabilisation energy; 0 switches it off
   Location at;
 };
 
-struct MaterialInput {           // [material.NAME]
+struct MaterialInput {  // [material.NAME]
   std::string name;
-  std::string law;               // "neo-hookean", "mooney-rivlin", "yeoh"
-  double density = 0;            // kg/m^3
-  std::optional<double> youngs_modulus;              // neo-hookean: one of E, mu, c10
+  std::string law;                       // "neo-hookean", "mooney-rivlin", "yeoh"
+  double density = 0;                    // kg/m^3
+  std::optional<double> youngs_modulus;  // neo-hookean: one of E, mu, c10
   std::optional<double> shear_modulus;
-  std::optional<double> c10, c01, c20, c30;          // Pa
+  std::optional<double> c10, c01, c20, c30;  // Pa
   Location at;
 };
 
 /// One component of a displacement: a function of x, y, z and stretch or t, or free.
 struct ComponentInput {
-  std::optional<Expression> value;                   // nothing: "free"
+  std::optional<Expression> value;  // nothing: "free"
 };
 
-struct LoadInput {               // [[load]]
-  std::vector<Named> on;         // named edges of the box or sets
-  std::vector<ComponentInput> displacement;          // one per dimension
+struct LoadInput {                           // [[load]]
+  std::vector<Named> on;                     // named edges of the box or sets
+  std::vector<ComponentInput> displacement;  // one per dimension
   Location at;
 };
 
-struct SolverInput {             // [solver]
-  std::string method;            // "dynamic-relaxation" or "verlet"
+struct SolverInput {   // [solver]
+  std::string method;  // "dynamic-relaxation" or "verlet"
   // dynamic relaxation
-  std::vector<double> stretch;   // output states, strictly monotone away from 1
-  double increment = 0.1;        // largest step of the stretch
-  double tolerance = 1e-5;       // free force / reaction
-  int max_iterations = 20000;    // per load step; then the step is cut
+  std::vector<double> stretch;  // output states, strictly monotone away from 1
+  double increment = 0.1;       // largest step of the stretch
+  double tolerance = 1e-5;      // free force / reaction
+  int max_iterations = 20000;   // per load step; then the step is cut
   // Verlet
-  double until = 0;              // s
-  std::optional<double> step;    // s; default: from the stable step
+  double until = 0;            // s
+  std::optional<double> step;  // s; default: from the stable step
   double safety = 0.8;
   Location at;
 };
 
-struct OutputInput {             // [output]
-  std::optional<double> every;             // s (Verlet); relaxation: at each stretch
-  std::optional<double> history_every;     // s (Verlet)
+struct OutputInput {                    // [output]
+  std::optional<double> every;          // s (Verlet); relaxation: at each stretch
+  std::optional<double> history_every;  // s (Verlet)
   std::vector<std::string> fields = {"displacement", "damage", "strain_energy_density", "nominal_stress"};
   Location at;
 };
 
-struct ProbeInput {              // [[probe]]
+struct ProbeInput {  // [[probe]]
   std::string name;
-  std::string kind;              // "reaction", "nominal-stress", "displacement", "stretch"
-  Named on;                      // reaction, nominal-stress: an edge or a set
-  std::optional<Point> position; // displacement: a place in the undeformed body (m)
-  std::optional<Point> from, to; // stretch: deformed over undeformed distance of two places
+  std::string kind;               // "reaction", "nominal-stress", "displacement", "stretch"
+  Named on;                       // reaction, nominal-stress: an edge or a set
+  std::optional<Point> position;  // displacement: a place in the undeformed body (m)
+  std::optional<Point> from, to;  // stretch: deformed over undeformed distance of two places
   Location at;
 };
 
 /// A number with a unit of the user's choice.
 struct AnyQuantity {
   double si = 0;
-  std::string dimension;         // SI base units as UDUNITS prints them; "1" without unit
+  std::string dimension;  // SI base units as UDUNITS prints them; "1" without unit
 };
 
-struct ExpectInput {             // [[expect]]
-  std::string metric;                                // or field + file
+struct ExpectInput {   // [[expect]]
+  std::string metric;  // or field + file
   std::optional<AnyQuantity> value;
   std::optional<AnyQuantity> absolute_tolerance;
   std::optional<AnyQuantity> min, max;
-  std::optional<double> tolerance;                   // relative
-  std::string field;                                 // "displacement"
-  std::string file;                                  // CSV, relative to the case file
-  double exclude_within = 0;                         // m
-  std::optional<double> state;                       // key `at`: stretch, time or cycle; default: final (metric), all (field)
-  std::string kind;                                  // "published" or "reference"
+  std::optional<double> tolerance;  // relative
+  std::string field;                // "displacement"
+  std::string file;                 // CSV, relative to the case file
+  double exclude_within = 0;        // m
+  std::optional<double> state;      // key `at`: stretch, time or cycle; default: final (metric), all (field)
+  std::string kind;                 // "published" or "reference"
   std::string source;
   Location at;
 };
 
 struct ShortInput {              // [short]: what `riven verify --short` runs
-  std::vector<std::string> set;                      // overrides as for --set
+  std::vector<std::string> set;  // overrides as for --set
   std::vector<ExpectInput> expect;
   Location at;
 };

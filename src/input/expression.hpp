@@ -10,8 +10,8 @@ namespace riven {
 
 /// What an expression of a case file may depend on; SI units.
 struct Variables {
-  Point position{};      // x, y, z (m)
-  double t = 0;          // s
+  Point position{};  // x, y, z (m)
+  double t = 0;      // s
   double stretch = 1;
 };
 
@@ -25,7 +25,7 @@ class Expression {
 
   double operator()(const Variables& variables) const;
 
-  [[nodiscard]] const std::string& written() const;   // as the user wrote it
+  [[nodiscard]] const std::string& written() const;  // as the user wrote it
   [[nodiscard]] bool depends_on(const std::string& variable) const;
   [[nodiscard]] const Location& location() const;
 

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kTerminalInterval = 0.1;  // s
 constexpr double kPlainInterval = 2;       // s
+constexpr double kTellingFraction = 0.02;  // of the run: before it, the time left is anyone's guess
 constexpr const char* kClearLine = "\r\x1b[K";
 
 int terminal_width() {
@@ -45,7 +46,7 @@ std::string progress_text(const ProgressState& state, double elapsed_s) {
   if (!std::isnan(state.residual)) fmt::format_to(out, ", residual {:.1e}", state.residual);
   if (state.iterations > 0) fmt::format_to(out, ", iteration {}", state.iterations);
   fmt::format_to(out, ", {} elapsed", duration_text(elapsed_s));
-  if (state.fraction > 0 && state.fraction < 1) {
+  if (state.fraction >= kTellingFraction && state.fraction < 1) {
     fmt::format_to(out, ", {} left", duration_text(elapsed_s * (1 - state.fraction) / state.fraction));
   }
   if (!std::isnan(state.balance_error)) fmt::format_to(out, ", energy balance {:.1e}", state.balance_error);

@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "base/error.hpp"
 #include "output/atomic_file.hpp"
@@ -16,11 +14,6 @@ namespace riven {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr std::array<std::pair<RunStatus, const char*>, 3> kStatusNames{
-    {{RunStatus::finished, "finished"},
-     {RunStatus::failed, "failed"},
-     {RunStatus::interrupted, "interrupted"}}};
 
 // JSON has no NaN or infinity.
 Json number(double value) {
@@ -81,8 +74,8 @@ EnergySummary energy_from(const Json& object) {
 }
 
 RunStatus status_from(const std::string& text) {
-  for (const auto& [status, name] : kStatusNames) {
-    if (text == name) return status;
+  for (const RunStatus status : {RunStatus::finished, RunStatus::failed, RunStatus::interrupted}) {
+    if (text == name(status)) return status;
   }
   throw std::runtime_error(fmt::format("unknown status \"{}\"", text));
 }
@@ -114,9 +107,7 @@ Summary summary_from(const Json& object) {
 
 void write_summary(const std::filesystem::path& path, const Summary& summary) {
   Json object;
-  for (const auto& [status, name] : kStatusNames) {
-    if (status == summary.status) object["status"] = name;
-  }
+  object["status"] = name(summary.status);
   object["case"] = summary.case_name;
   object["version"] = summary.version;
   object["metrics"] = to_json(summary.metrics);

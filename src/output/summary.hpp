@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "output/parameter.hpp"
@@ -20,6 +21,19 @@ struct Metric {
 using Metrics = std::map<std::string, Metric>;
 
 enum class RunStatus { finished, failed, interrupted };
+
+/// "finished", "failed" or "interrupted".
+constexpr std::string_view name(RunStatus status) {
+  switch (status) {
+    case RunStatus::finished:
+      return "finished";
+    case RunStatus::failed:
+      return "failed";
+    case RunStatus::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
 
 /// Metrics at one output state.
 struct SummaryState {

@@ -150,13 +150,23 @@ std::size_t Membrane::dofs() const { return 2 * body_.lattice.size() + 3 * inclu
 std::size_t Membrane::inclusion_dof(std::size_t inclusion) const { return 2 * body_.lattice.size() + 3 * inclusion; }
 
 std::size_t Membrane::points_by_least_squares() const {
-  return static_cast<std::size_t>(
-      std::count_if(listed_.begin(), listed_.end(), [](const ListedFamily& family) { return family.by_least_squares; }));
+  return static_cast<std::size_t>(std::count_if(listed_.begin(), listed_.end(), [](const ListedFamily& family) {
+    return family.by_least_squares;
+  }));
 }
 
 std::size_t Membrane::points_by_gradient() const {
   return static_cast<std::size_t>(
       std::count_if(listed_.begin(), listed_.end(), [](const ListedFamily& family) { return family.by_gradient; }));
+}
+
+std::size_t Membrane::bytes() const {
+  const std::size_t n = body_.lattice.size();
+  constexpr std::size_t planes = kMoments + 4 + 4 + 7 + 1;  // doubles per stored point; the last is the body's volume
+  std::size_t listed = 0;
+  for (const ListedFamily& family : listed_) listed += sizeof family + family.bonds.size() * sizeof(MembraneBond);
+  return n * (planes * sizeof(double) + sizeof(std::ptrdiff_t) + sizeof(PointKind) + sizeof(std::uint16_t)) +
+         n * body_.stencil.size() / 8 + body_.points.size() * sizeof(std::size_t) + listed;
 }
 
 double Membrane::strain_energy(std::span<const double> u) {

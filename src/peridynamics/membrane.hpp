@@ -65,6 +65,9 @@ class Membrane final : public Model {
   template <class Visit>
   void for_each_bond(std::size_t point, const Visit& visit) const;
 
+  /// Memory that body and model hold, without state vectors (bytes).
+  [[nodiscard]] std::size_t bytes() const;
+
   /// Points whose weights were found by least squares, and those that use the deformation gradient.
   [[nodiscard]] std::size_t points_by_least_squares() const;
   [[nodiscard]] std::size_t points_by_gradient() const;

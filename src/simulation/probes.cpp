@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "verification/interpolation.hpp"
+#include "verification/interpolate.hpp"
 
 namespace riven {
 

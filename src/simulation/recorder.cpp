@@ -27,7 +27,12 @@ void Recorder::progressed(const SolverProgress& progress) {
   state.fraction = (progress.reached - progress.begin) / (progress.end - progress.begin);
   state.iterations = simulation_.parameter == Parameter::time ? progress.step : progress.iteration;
   state.balance_error = last_.energy.error();
-  if (progress.tolerance > 0) state.residual = progress.residual;
+  if (simulation_.parameter != Parameter::time) {
+    state.load_step = static_cast<int>(progress.step);
+    state.load_steps = static_cast<int>(progress.steps);
+    state.residual = progress.residual;
+    state.step_done = progress.residual <= progress.tolerance;
+  }
   screen_.update(state);
 }
 

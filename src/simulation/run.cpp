@@ -8,7 +8,7 @@
 #include <iostream>
 #include <sstream>
 
-#include "input/resolved.hpp"
+#include "input/case_writer.hpp"
 #include "simulation/interrupt.hpp"
 #include "simulation/recorder.hpp"
 #include "solver/dynamic_relaxation.hpp"

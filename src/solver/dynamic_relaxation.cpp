@@ -19,14 +19,14 @@ constexpr int kProgressEvery = 50;      // iterations
 
 /// Sums that one iteration needs, gathered in one sweep.
 struct Sums {
-  double force2 = 0;        // F.F over free entries
-  double quotient_over = 0; // U.K U, U.U of eq. (11)
-  double quotient_under = 0;
+  double force2 = 0;            // F.F over free entries
+  double stiffness = 0;         // v.K v, with K v = -(change of F) since the last step moved u by v
+  double inertia = 0;           // v.D v
 
   Sums& operator+=(const Sums& other) {
     force2 += other.force2;
-    quotient_over += other.quotient_over;
-    quotient_under += other.quotient_under;
+    stiffness += other.stiffness;
+    inertia += other.inertia;
     return *this;
   }
 };
@@ -88,7 +88,7 @@ class Relaxation {
     const std::vector<double> start = state_.u;
     predict(target);
     constraints_.set_parameter(target);
-    auto failure = equilibrate(target, start);
+    auto failure = equilibrate(target);
     if (failure) {
       state_.u = start;
       constraints_.set_parameter(state_.parameter);
@@ -115,14 +115,14 @@ class Relaxation {
     model_.move(state_.u, affine.gradient, affine.shift);
   }
 
-  std::optional<std::string> equilibrate(double target, const std::vector<double>& start) {
+  std::optional<std::string> equilibrate(double target) {
     std::fill(velocity_.begin(), velocity_.end(), 0.0);
     constraints_.apply(state_.u);
     set_masses();
     for (long iteration = 0; iteration < settings_.max_iterations; ++iteration) {
       std::swap(force_, old_force_);
       if (const auto breakdown = evaluate()) return describe(*breakdown);
-      const Sums sums = sweep(iteration == 0, start);
+      const Sums sums = sweep();
       const double residual = std::sqrt(sums.force2) / constraints_.reaction_norm();
       if (!std::isfinite(sums.force2)) return "the forces are no longer finite";
       if (iteration % kProgressEvery == 0 || residual <= settings_.tolerance) report(target, iteration, residual);
@@ -149,24 +149,23 @@ class Relaxation {
   }
 
   /// Norm of the free force and the quotient for the damping. Slaves and padding hold zero force.
-  Sums sweep(bool first, const std::vector<double>& start) const {
+  Sums sweep() const {
     return ordered_sum<Sums>(n_, [&](std::size_t begin, std::size_t end) {
       Sums sums;
       for (std::size_t i = begin; i < end; ++i) {
         sums.force2 += force_[i] * force_[i];
-        if (first || mass_[i] == 0 || std::abs(velocity_[i]) < 1e-30) continue;
-        const double stiffness = -(force_[i] - old_force_[i]) / (mass_[i] * velocity_[i]);
-        const double moved = state_.u[i] - start[i];
-        sums.quotient_over += moved * stiffness * moved;
-        sums.quotient_under += moved * moved;
+        sums.stiffness -= (force_[i] - old_force_[i]) * velocity_[i];
+        sums.inertia += mass_[i] * velocity_[i] * velocity_[i];
       }
       return sums;
     });
   }
 
+  /// Critical damping of the frequency at which the body moves now. Eq. (11) takes the quotient over the displacement since the
+  /// last load step, entry by entry; where that is mostly the load's own affine part it says nothing of the motion that is left.
   static double damping(const Sums& sums) {
-    if (!(sums.quotient_over > 0) || !(sums.quotient_under > 0)) return 0;
-    return std::min(2 * std::sqrt(sums.quotient_over / sums.quotient_under), kLargestDamping);
+    if (!(sums.stiffness > 0) || !(sums.inertia > 0)) return 0;
+    return std::min(2 * std::sqrt(sums.stiffness / sums.inertia), kLargestDamping);
   }
 
   void advance(double c, bool first) {
@@ -191,11 +190,13 @@ class Relaxation {
   }
 
   void report(double target, long iteration, double residual) const {
+    const double left = std::abs(settings_.targets.back() - state_.parameter) / settings_.increment;
     observer_.progressed({.parameter = target,
                           .reached = state_.parameter,
                           .begin = settings_.start,
                           .end = settings_.targets.back(),
                           .step = state_.steps + 1,
+                          .steps = state_.steps + std::max(1L, std::lround(std::ceil(left - 1e-9))),
                           .iteration = iteration,
                           .residual = residual,
                           .tolerance = settings_.tolerance});

@@ -38,7 +38,8 @@ struct SolverProgress {
   double parameter = 0;      // aimed at (statics) or reached (dynamics)
   double reached = 0;        // by the last complete step
   double begin = 0, end = 0; // of the whole run
-  long step = 0;
+  long step = 0;             // of `steps`, as far as one can tell (statics); taken (dynamics)
+  long steps = 0;
   long iteration = 0;        // within the step
   double residual = 0;       // free force / reaction; 0 in dynamics
   double tolerance = 0;

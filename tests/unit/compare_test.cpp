@@ -167,7 +167,7 @@ TEST(Interpolation, HasNoValueWhereNoneMakesSense) {
   EXPECT_FALSE(interpolation.at({0.1, 0.145, 0})) << "in a hole";
   EXPECT_TRUE(interpolation.at({0.1, 0.15, 0})) << "on the hole's edge";
   EXPECT_TRUE(interpolation.at({0.205, 0, 0}));
-  EXPECT_FALSE(interpolation.at({0.23, 0, 0})) << "far from every point";
+  EXPECT_FALSE(interpolation.at({0.217, 0, 0})) << "far from every point";
 }
 
 TEST(Interpolation, WidensItsViewUntilThePointsSpanThePlane) {

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace riven::app {
+
+/// What the user asked for on the command line, one member per option that commands share.
+struct Options {
+  std::string target;                   // case file, topic or result folder
+  std::vector<std::string> set;         // --set path=value
+  std::filesystem::path output;         // -o; empty: the default
+  bool force = false;
+  int threads = 0;                      // 0: all cores
+};
+
+struct CompareOptions {
+  std::filesystem::path folder;
+  std::filesystem::path reference;
+  std::string exclude_within;           // a length, or "1 horizon"
+  std::string tolerance;                // "1 %"; empty: report only
+  std::string history;                  // metric=column; empty: the displacement field
+  bool json = false;
+};
+
+enum ExitCode : int { kDone = 0, kMissed = 1, kWrongInput = 2, kFailed = 3, kInterrupted = 130 };
+
+int run(const Options& options);
+int check(const Options& options);
+int cases();
+/// `brief`: run the [short] variants.
+int verify(const Options& options, bool brief);
+int compare(const CompareOptions& options);
+int schema(bool markdown);
+
+/// Folder of the shipped cases.
+std::filesystem::path cases_folder();
+/// A case by its file, or a shipped one by topic/name. Throws InputError with what is near.
+std::filesystem::path find_case(const std::string& target);
+/// results/<topic>/<name> for shipped cases, results/<file stem> otherwise.
+std::filesystem::path default_output(const std::filesystem::path& case_file);
+/// "topic/name" or the file's stem: the name of the case in summaries.
+std::string case_name(const std::filesystem::path& case_file);
+
+}  // namespace riven::app

@@ -1,0 +1,438 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <set>
+
+#include "base/nearest_name.hpp"
+#include "input/format.hpp"
+#include "input/shape_format.hpp"
+
+namespace riven {
+namespace {
+
+using kind::AnyUnit;
+using kind::Components;
+using kind::Integer;
+using kind::NamedTables;
+using kind::Part;
+using kind::Parts;
+using kind::Place;
+using kind::Quantities;
+using kind::Quantity;
+using kind::Table;
+using kind::Tables;
+using kind::Text;
+using kind::Texts;
+
+const std::string relaxation = "dynamic-relaxation";
+const std::string verlet = "verlet";
+
+When method(const Case& c, const std::string& value) {
+  return {"solver.method", &c.solver.method, {value}};
+}
+
+// An array of tables over a vector whose elements `describe_one` describes.
+template <class Item, class Describe>
+Tables tables(std::vector<Item>& items, Describe describe_one) {
+  return {[&items] { return items.size(); },
+          [&items, describe_one](std::size_t i) {
+            if (i == items.size()) items.emplace_back();
+            return describe_one(items[i], i);
+          }};
+}
+
+template <class Item, class Describe>
+NamedTables named_tables(std::vector<Item>& items, Describe describe_one) {
+  return {[&items] { return items.size(); },
+          [&items, describe_one](std::size_t i) { return describe_one(items[i]); },
+          [&items](std::size_t i) -> std::string& {
+            if (i == items.size()) items.emplace_back();
+            return items[i].name;
+          }};
+}
+
+// Two of a kind must not share a name: probes name columns, sets name regions.
+template <class Item>
+void check_new_name(const std::vector<Item>& items, const Item& item, const Check& check) {
+  for (const Item& other : items)
+    if (&other != &item && other.name == item.name)
+      check.fail("name", fmt::format("\"{}\" is the name of another one at {}; expected a new name",
+                                     item.name, other.at.text()));
+}
+
+void check_shape(const Shape& shape, const Case& c, const Check& check) {
+  if (std::holds_alternative<Ball>(shape) && c.geometry.lattice.dimension != 3)
+    check.fail("ball", "belongs to bodies in three dimensions; expected disc or box");
+}
+
+// ---- what interrupts the body ----
+
+Format describe(HoleInput& hole, const Case& c) {
+  const auto shape = std::make_shared<std::optional<Shape>>(hole.shape);
+  return {.doc = "A hole: a shape without material.",
+          .at = &hole.at,
+          .keys = shape_keys(*shape),
+          .groups = {{{"disc", "box", "ball"}}},
+          .finish = [shape, &hole, &c](const Check& check) {
+            hole.shape = shape->value();
+            check_shape(hole.shape, c, check);
+          }};
+}
+
+Format describe(CrackInput& crack, const Case& c) {
+  return {.doc = "A straight crack of zero width in two dimensions.",
+          .at = &crack.at,
+          .keys = {Key{"from", Place{&crack.segment.a}, "One end."}.required(),
+                   Key{"to", Place{&crack.segment.b}, "The other end."}.required()},
+          .finish = [&crack, &c](const Check& check) {
+            if (c.geometry.lattice.dimension != 2)
+              check.fail("from", "cracks belong to bodies in two dimensions");
+            if (crack.segment.a == crack.segment.b)
+              check.fail("to", "is the same place as from; expected a crack with a length");
+          }};
+}
+
+Format describe(InclusionInput& inclusion, const Case& c, std::size_t index) {
+  const auto shape = std::make_shared<std::optional<Shape>>(inclusion.shape);
+  std::vector<Key> keys = {
+      Key{"name", Text{&inclusion.name}, "Its name; inclusion-1, inclusion-2, ... unless given."},
+      Key{"motion", Text{&inclusion.motion, {"free", "fixed"}},
+          "Whether it moves with the body around it or stays."}
+          .otherwise("\"free\"")};
+  for (Key& key : shape_keys(*shape)) keys.push_back(std::move(key));
+  return {.doc = "A rigid inclusion, bonded to the body.",
+          .at = &inclusion.at,
+          .keys = std::move(keys),
+          .groups = {{{"disc", "box", "ball"}}},
+          .finish = [shape, &inclusion, &c, index](const Check& check) {
+            if (inclusion.name.empty()) inclusion.name = fmt::format("inclusion-{}", index + 1);
+            check_new_name(c.inclusions, inclusion, check);
+            inclusion.shape = shape->value();
+            check_shape(inclusion.shape, c, check);
+          }};
+}
+
+Format describe(SetInput& set, const Case& c) {
+  std::vector<Key> keys = {
+      Key{"where", kind::Condition{&set.where}, "A formula of x, y, z that is true in the set."}};
+  for (Key& key : shape_keys(set.shape)) keys.push_back(std::move(key));
+  return {.doc = "A named set of points, for loads and probes.",
+          .at = &set.at,
+          .keys = std::move(keys),
+          .groups = {{{"where", "disc", "box", "ball"}}},
+          .finish = [&set, &c](const Check& check) {
+            const std::vector<std::string> edges{"left", "right", "bottom", "top", "back", "front"};
+            if (std::find(edges.begin(), edges.end(), set.name) != edges.end())
+              check.fail("", fmt::format("\"{}\" is the name of an edge; expected another name than {}",
+                                         set.name, listed(edges)));
+            if (set.shape) check_shape(*set.shape, c, check);
+          }};
+}
+
+// ---- model and material ----
+
+Format describe(ModelInput& model) {
+  return {.doc = "How points interact.",
+          .at = &model.at,
+          .keys = {Key{"kind", Text{&model.kind, {"membrane"}}, "The model."}.otherwise("\"membrane\""),
+                   Key{"stabilisation", Quantity{&model.stabilisation, dimension::none, not_negative},
+                       "Factor of the stabilisation energy; 0 switches it off."}
+                       .otherwise("4")}};
+}
+
+Format describe(MaterialInput& m, const Case& c) {
+  const auto law = [&m](std::vector<std::string> laws) { return When{"law", &m.law, std::move(laws)}; };
+  const auto modulus = [](std::optional<double>& to, Range range) {
+    return Quantity{&to, dimension::pressure, range};
+  };
+  return {
+      .doc = "A constitutive law and its parameters. For now a case has exactly one material.",
+      .at = &m.at,
+      .keys =
+          {Key{"law", Text{&m.law, {"neo-hookean", "mooney-rivlin", "yeoh"}}, "The constitutive law."}
+               .required(),
+           Key{"density", Quantity{&m.density, dimension::density, positive}, "Needed where inertia counts."}
+               .required_if(method(c, verlet)),
+           Key{"youngs_modulus", modulus(m.youngs_modulus, positive), "Young's modulus."}.applies(
+               law({"neo-hookean"})),
+           Key{"shear_modulus", modulus(m.shear_modulus, positive), "Shear modulus."}.applies(
+               law({"neo-hookean"})),
+           Key{"c10", modulus(m.c10, any_number), "First parameter of the law."}.required_if(
+               law({"mooney-rivlin", "yeoh"})),
+           Key{"c01", modulus(m.c01, any_number), "Second parameter."}
+               .applies(law({"mooney-rivlin"}))
+               .required(),
+           Key{"c20", modulus(m.c20, any_number), "Second parameter."}.applies(law({"yeoh"})).otherwise("0"),
+           Key{"c30", modulus(m.c30, any_number), "Third parameter."}.applies(law({"yeoh"})).otherwise("0")},
+      .groups = {{{"youngs_modulus", "shear_modulus", "c10"}, true, law({"neo-hookean"})}},
+      .finish = [&m](const Check& check) {
+        const double shear = 2 * (m.c10.value_or(1) + m.c01.value_or(0));
+        if (shear <= 0)
+          check.fail("c10", "gives a shear modulus of zero or less; expected c10 + c01 above 0");
+      }};
+}
+
+// ---- load and solver ----
+
+Format describe(LoadInput& load) {
+  return {.doc = "What is prescribed on an edge or a set.",
+          .at = &load.at,
+          .keys = {Key{"on", Parts{&load.on},
+                       "An edge (left, right, bottom, top, back, front) or a set, or a list of them."}
+                       .required(),
+                   Key{"displacement", Components{&load.displacement},
+                       "One entry per direction: \"free\" or a length, a formula of x, y, z and stretch "
+                       "(dynamic relaxation) or t (Verlet)."}
+                       .required()},
+          .finish = [&load](const Check& check) {
+            std::set<std::string> seen;
+            for (const Named& name : load.on)
+              if (!seen.insert(name.text).second)
+                check.fail("on", fmt::format("names \"{}\" twice", name.text));
+            const auto free = [](const ComponentInput& component) { return !component.value; };
+            if (std::all_of(load.displacement.begin(), load.displacement.end(), free))
+              check.fail("displacement", "every entry is \"free\"; expected a load");
+          }};
+}
+
+void check_stretch(const std::vector<double>& stretch, const Check& check) {
+  double before = 1;
+  for (const double next : stretch) {
+    const bool away = stretch.front() > 1 ? next > before : next < before;
+    if (!away)
+      check.fail("stretch",
+                 fmt::format("{} comes after {}; expected numbers that move away from 1, such as [1.5, 2, 3]",
+                             next, before));
+    before = next;
+  }
+}
+
+Format describe(SolverInput& s) {
+  const When relaxed{"method", &s.method, {relaxation}};
+  const When in_time{"method", &s.method, {verlet}};
+  const auto time = [](auto& to) { return Quantity{&to, dimension::time, positive}; };
+  return {
+      .doc = "How the body is brought to its states.",
+      .at = &s.at,
+      .keys = {Key{"method", Text{&s.method, {relaxation, verlet}},
+                   "Static states by relaxation, or motion by explicit steps."}
+                   .required(),
+               Key{"stretch", Quantities{&s.stretch, dimension::none, positive},
+                   "Output states, moving away from 1."}
+                   .applies(relaxed)
+                   .required(),
+               Key{"increment", Quantity{&s.increment, dimension::none, positive},
+                   "Largest step of the stretch."}
+                   .applies(relaxed)
+                   .otherwise("0.1"),
+               Key{"tolerance", Quantity{&s.tolerance, dimension::none, fraction},
+                   "Largest free force over the reaction at a state."}
+                   .applies(relaxed)
+                   .otherwise("1e-5"),
+               Key{"max_iterations", Integer{&s.max_iterations, 1},
+                   "Per load step; beyond it the step is cut."}
+                   .applies(relaxed)
+                   .otherwise("20000"),
+               Key{"until", time(s.until), "End of the run."}.applies(in_time).required(),
+               Key{"step", time(s.step), "Time step; from the stable step unless given."}.applies(in_time),
+               Key{"safety", Quantity{&s.safety, dimension::none, fraction},
+                   "Part of the stable step that is used."}
+                   .applies(in_time)
+                   .otherwise("0.8")},
+      .finish = [&s](const Check& check) { check_stretch(s.stretch, check); }};
+}
+
+// ---- what comes out ----
+
+Format describe(OutputInput& output, const Case& c) {
+  const auto time = [](std::optional<double>& to) { return Quantity{&to, dimension::time, positive}; };
+  return {
+      .doc = "What is written. Dynamic relaxation writes at each stretch.",
+      .at = &output.at,
+      .keys = {
+          Key{"every", time(output.every), "Time between output states; start and end only unless given."}
+              .applies(method(c, verlet)),
+          Key{"history_every", time(output.history_every),
+              "Time between rows of the history; `every` unless given."}
+              .applies(method(c, verlet)),
+          Key{"fields",
+              Texts{&output.fields,
+                    {"displacement", "damage", "strain_energy_density", "nominal_stress", "weight_minimum"}},
+              "Fields of the output states."}
+              .otherwise(R"(["displacement", "damage", "strain_energy_density", "nominal_stress"])")}};
+}
+
+Format describe(ProbeInput& p, const Case& c) {
+  const auto kinds = [&p](std::vector<std::string> among) { return When{"kind", &p.kind, std::move(among)}; };
+  return {.doc = "A number that is followed through the run.",
+          .at = &p.at,
+          .keys = {Key{"name", Text{&p.name}, "Its name in the history and in metrics."}.required(),
+                   Key{"kind", Text{&p.kind, {"reaction", "nominal-stress", "displacement", "stretch"}},
+                       "What it measures."}
+                       .required(),
+                   Key{"on", Part{&p.on}, "The edge or set whose force is summed."}
+                       .applies(kinds({"reaction", "nominal-stress"}))
+                       .required(),
+                   Key{"at", Place{&p.position}, "A place in the undeformed body."}
+                       .applies(kinds({"displacement"}))
+                       .required(),
+                   Key{"from", Place{&p.from}, "One of two places in the undeformed body."}
+                       .applies(kinds({"stretch"}))
+                       .required(),
+                   Key{"to", Place{&p.to},
+                       "The other place; the probe is their distance over the undeformed one."}
+                       .applies(kinds({"stretch"}))
+                       .required()},
+          .finish = [&p, &c](const Check& check) {
+            check_new_name(c.probes, p, check);
+            if (p.from && p.from == p.to) check.fail("to", "is the same place as from; expected two places");
+          }};
+}
+
+// The values of one expectation share a dimension; a plain 0 takes that of its companions.
+void unify_dimensions(ExpectInput& e, const Check& check) {
+  const std::array<std::pair<const char*, std::optional<AnyQuantity>*>, 4> all{
+      {{"value", &e.value}, {"absolute_tolerance", &e.absolute_tolerance}, {"min", &e.min}, {"max", &e.max}}};
+  const auto plain_zero = [](const AnyQuantity& q) { return q.si == 0 && q.dimension == "1"; };
+  std::string shared;
+  for (const auto& [key, quantity] : all) {
+    if (!*quantity || plain_zero(**quantity)) continue;
+    if (shared.empty()) shared = (*quantity)->dimension;
+    if ((*quantity)->dimension != shared)
+      check.fail(key, fmt::format("is in {}; expected {}, as its companion", (*quantity)->dimension, shared));
+  }
+  for (const auto& [key, quantity] : all)
+    if (*quantity && !shared.empty()) (*quantity)->dimension = shared;
+}
+
+void check_metric(ExpectInput& e, const Check& check) {
+  const bool range = e.min || e.max;
+  if (!e.value && !range) check.fail("metric", "nothing to compare with; expected value, or min and max");
+  if (e.value && range) check.fail("value", "given together with min or max; expected one of both");
+  unify_dimensions(e, check);
+  if (e.min && e.max && e.min->si > e.max->si) check.fail("max", "is below min");
+  if (range && (e.tolerance || e.absolute_tolerance)) check.fail("min", "min and max need no tolerance");
+  if (e.value && e.value->si == 0 && e.tolerance)
+    check.fail("tolerance", "is relative, and the value is 0; expected absolute_tolerance");
+  if (e.value && e.kind == "reference" && !e.tolerance && !e.absolute_tolerance)
+    check.fail("value", "a reference decides; expected tolerance (relative) or absolute_tolerance with it");
+}
+
+Format describe(ExpectInput& e, const Case& c) {
+  const bool in_time = c.solver.method == verlet;
+  return {.doc = "A published or reference result, which `riven verify` compares; only references decide.",
+          .at = &e.at,
+          .keys = {Key{"metric", Text{&e.metric}, "A name in the metrics of summary.json."},
+                   Key{"value", AnyUnit{&e.value}, "Its value, with unit."},
+                   Key{"tolerance", Quantity{&e.tolerance, dimension::none, positive},
+                       "Relative; for a field the relative L2 norm per state."},
+                   Key{"absolute_tolerance", AnyUnit{&e.absolute_tolerance},
+                       "Instead of the relative one, for values of zero."},
+                   Key{"min", AnyUnit{&e.min}, "Smallest value, instead of value and tolerance."},
+                   Key{"max", AnyUnit{&e.max}, "Largest value."},
+                   Key{"field", Text{&e.field, {"displacement"}}, "A field instead of a metric."},
+                   Key{"file", Text{&e.file}, "CSV with the field's values, relative to the case file."},
+                   Key{"exclude_within", Quantity{&e.exclude_within, dimension::length, not_negative},
+                       "Field points this near to a defect do not count."}
+                       .otherwise("0"),
+                   Key{"at", Quantity{&e.state, in_time ? dimension::time : dimension::none, any_number},
+                       "The state: a stretch, or a time with unit; unless given the final one (metric) or "
+                       "all (field)."},
+                   Key{"kind", Text{&e.kind, {"published", "reference"}},
+                       "Whether the value was published or is an independent reference."}
+                       .required(),
+                   Key{"source", Text{&e.source}, "Where the value comes from."}.otherwise("\"\"")},
+          .groups = {{{"metric", "field"}}},
+          .finish = [&e](const Check& check) {
+            if (e.field.empty()) {
+              if (check.given("file")) check.fail("file", "belongs to field, not to metric");
+              return check_metric(e, check);
+            }
+            if (e.file.empty()) check.fail("file", "missing; a field needs the CSV file to compare with");
+            for (const char* key : {"value", "absolute_tolerance", "min", "max"})
+              if (check.given(key)) check.fail(key, "belongs to metric; a field takes file and tolerance");
+            if (e.kind == "reference" && !e.tolerance)
+              check.fail("tolerance", "missing; a reference decides and needs it");
+          }};
+}
+
+Format describe(std::optional<ShortInput>& run, const Case& c) {
+  if (!run) run.emplace();
+  return {.doc = "What `riven verify --short` runs instead: overrides and their own expectations.",
+          .at = &run->at,
+          .keys = {Key{"set", Texts{&run->set}, "Overrides as for --set: \"path.to.key=value\"."}.required(),
+                   Key{"expect",
+                       tables(run->expect, [&c](ExpectInput& e, std::size_t) { return describe(e, c); }),
+                       "As [[expect]]."}},
+          .finish = [&run](const Check& check) {
+            for (const std::string& text : run->set)
+              if (text.find('=') == std::string::npos || text.front() == '=')
+                check.fail("set", fmt::format("\"{}\" has no \"=\"; expected \"path.to.key=value\"", text));
+          }};
+}
+
+void check_case(const Case& c, const Check& check) {
+  if (c.materials.size() == 1) return;
+  if (c.materials.empty())
+    check.fail("material", "missing; expected one material, such as [material.rubber]");
+  check.fail("material",
+             fmt::format("{} materials are given ({} at {} is the second); expected exactly one for now",
+                         c.materials.size(), c.materials[1].name, c.materials[1].at.text()));
+}
+
+bool always() {
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::string> edge_names(const Case& of) {
+  std::vector<std::string> names{"left", "right", "bottom", "top", "back", "front"};
+  if (!std::holds_alternative<Box>(of.geometry.lattice.shape)) return {};
+  names.resize(2 * static_cast<std::size_t>(of.geometry.lattice.dimension));
+  return names;
+}
+
+std::vector<std::string> part_names(const Case& of) {
+  std::vector<std::string> names = edge_names(of);
+  for (const SetInput& set : of.sets) names.push_back(set.name);
+  return names;
+}
+
+Format describe(Case& c) {
+  // The order is that of reading: what later keys need comes first.
+  return {
+      .doc = "A case: one text file in TOML that says all about one simulation.",
+      .keys = {Key{"title", Text{&c.title}, "What the case shows."}.required(),
+               Key{"source", Text{&c.source}, "Where the problem was published."}.otherwise("\"\""),
+               Key{"geometry", Table{[&c] { return describe(c.geometry); }, always}, "The body."}.required(),
+               Key{"hole", tables(c.holes, [&c](HoleInput& h, std::size_t) { return describe(h, c); }),
+                   "Holes."},
+               Key{"crack", tables(c.cracks, [&c](CrackInput& k, std::size_t) { return describe(k, c); }),
+                   "Cracks."},
+               Key{"inclusion",
+                   tables(c.inclusions, [&c](InclusionInput& i, std::size_t n) { return describe(i, c, n); }),
+                   "Rigid inclusions."},
+               Key{"set", named_tables(c.sets, [&c](SetInput& s) { return describe(s, c); }),
+                   "Sets of points."},
+               Key{"model", Table{[&c] { return describe(c.model); }, always}, "The model."}.otherwise("{}"),
+               Key{"solver", Table{[&c] { return describe(c.solver); }, always}, "The solver."}.required(),
+               Key{"material", named_tables(c.materials, [&c](MaterialInput& m) { return describe(m, c); }),
+                   "The material."}
+                   .required(),
+               Key{"load", tables(c.loads, [](LoadInput& l, std::size_t) { return describe(l); }), "Loads."},
+               Key{"output", Table{[&c] { return describe(c.output, c); }, always}, "The output."}.otherwise(
+                   "{}"),
+               Key{"probe", tables(c.probes, [&c](ProbeInput& p, std::size_t) { return describe(p, c); }),
+                   "Probes."},
+               Key{"expect", tables(c.expects, [&c](ExpectInput& e, std::size_t) { return describe(e, c); }),
+                   "Expected results."},
+               Key{"short",
+                   Table{[&c] { return describe(c.short_run, c); }, [&c] { return c.short_run.has_value(); }},
+                   "The short variant."}},
+      .finish = [&c](const Check& check) { check_case(c, check); }};
+}
+
+}  // namespace riven

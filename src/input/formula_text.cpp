@@ -1,0 +1,176 @@
+#include "input/formula_text.hpp"
+
+#include <fmt/format.h>
+#include <muParser.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/nearest_name.hpp"
+
+namespace riven {
+namespace {
+
+bool digit(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+const std::vector<std::string>& function_names() {
+  static const std::vector<std::string> names = [] {
+    const mu::Parser parser;
+    std::vector<std::string> list;
+    for (const auto& [name, function] : parser.GetFunDef()) list.push_back(name);
+    return list;
+  }();
+  return names;
+}
+
+bool contains(const std::vector<std::string>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
+
+double UnitScale::of(const Dimension& d) const {
+  return std::pow(metre, d.metre) * std::pow(second, d.second) * std::pow(kilogram, d.kilogram) *
+         std::pow(kelvin, d.kelvin);
+}
+
+FormulaText::FormulaText(const std::string& text, const Symbols& symbols, const Origin& origin)
+    : text_(text), symbols_(symbols), origin_(origin) {
+  if (after_spaces(0) == text_.size()) origin_.fail("empty; expected a formula or a number with its unit");
+  scan();
+}
+
+std::string FormulaText::si(const UnitScale& scale) const {
+  std::string formula;
+  for (const Piece& piece : pieces_)
+    formula += piece.quantity
+                   ? fmt::format("({:.17g})", piece.quantity->si * scale.of(piece.quantity->dimension))
+                   : piece.text;
+  return formula;
+}
+
+void FormulaText::scan() {
+  while (position_ < text_.size()) {
+    const char c = text_[position_];
+    if (digit(c) || (c == '.' && digit(character(position_ + 1)))) {
+      scan_number();
+    } else if (!unit_word(text_, position_).empty()) {
+      scan_name();
+    } else {
+      scan_sign();
+    }
+  }
+}
+
+void FormulaText::scan_number() {
+  const std::size_t start = position_;
+  double number = 0;
+  const auto [end, error] = std::from_chars(text_.data() + start, text_.data() + text_.size(), number);
+  if (error != std::errc{} || !std::isfinite(number))
+    fail(start, "this number is too large or too small to be held");
+  position_ = static_cast<std::size_t>(end - text_.data());
+  const std::string digits = text_.substr(start, position_ - start);
+  const std::size_t next = after_spaces(position_);
+  try {
+    if (const auto match = match_unit(text_, next)) {
+      position_ = next + match->length;
+      add({to_si(number, match->unit), match->unit.dimension});
+      return;
+    }
+  } catch (const std::invalid_argument& wrong) {
+    fail(next, wrong.what());
+  }
+  const std::string_view name = unit_word(text_, next);
+  if (name.empty()) {
+    pieces_.push_back({digits, {}});
+  } else if (const auto length = length_name(name)) {
+    position_ = next + name.size();
+    check_not_a_power(name);
+    add({number * *length, dimension::length});
+  } else {
+    check_product(number, next);
+  }
+}
+
+// A name stands after a number and is no unit.
+void FormulaText::check_product(double number, std::size_t at) {
+  const std::string name(unit_word(text_, at));
+  if (contains(symbols_.variables, name) || contains(function_names(), name) || name == "pi")
+    fail(at, fmt::format("a product needs its sign: write \"{}*{}\"", number, name));
+  if (name == "dx" || name == "horizon") fail_unknown(name, at);
+  fail(at, fmt::format("unknown unit \"{}\"; units are {}{}", name, listed(unit_names()),
+                       did_you_mean(name, unit_names())));
+}
+
+// "3 dx^2" could be read in two ways.
+void FormulaText::check_not_a_power(std::string_view name) {
+  if (character(after_spaces(position_)) == '^')
+    fail(position_, fmt::format("write \"3*{0}^2\" or \"(3 {0})^2\" to say what the power belongs to", name));
+}
+
+void FormulaText::scan_name() {
+  const std::string_view name = unit_word(text_, position_);
+  const std::size_t start = position_;
+  position_ += name.size();
+  if (const auto length = length_name(name)) return add({*length, dimension::length});
+  const bool called = character(after_spaces(position_)) == '(';
+  const bool known =
+      called ? contains(function_names(), name) : name == "pi" || contains(symbols_.variables, name);
+  if (!known) fail_unknown(name, start);
+  pieces_.push_back({std::string(name), {}});
+}
+
+// Everything else goes to muParser as it is, except an assignment: it would change a variable.
+void FormulaText::scan_sign() {
+  const std::string_view rest = std::string_view(text_).substr(position_);
+  for (const std::string_view pair : {"==", "!=", "<=", ">="}) {
+    if (!rest.starts_with(pair)) continue;
+    pieces_.push_back({std::string(pair), {}});
+    position_ += pair.size();
+    return;
+  }
+  if (rest[0] == '=') fail(position_, "\"=\" does not compare; write \"==\", \"<\" or \">\"");
+  if (rest[0] == '"') fail(position_, "a formula cannot hold a string");
+  pieces_.push_back({std::string(1, rest[0]), {}});
+  ++position_;
+}
+
+std::optional<double> FormulaText::length_name(std::string_view name) const {
+  if (name == "dx") return symbols_.dx;
+  if (name == "horizon") return symbols_.horizon;
+  return std::nullopt;
+}
+
+std::size_t FormulaText::after_spaces(std::size_t i) const {
+  while (i < text_.size() && std::isspace(static_cast<unsigned char>(text_[i])) != 0) ++i;
+  return i;
+}
+
+void FormulaText::fail_unknown(std::string_view name, std::size_t at) const {
+  if (name == "dx") fail(at, "\"dx\" is known only after [geometry] has given the spacing");
+  if (name == "horizon") fail(at, "\"horizon\" is known only after [geometry]");
+  if (is_unit(name)) fail(at, fmt::format("the unit \"{0}\" must follow a number, as in \"1 {0}\"", name));
+  if (name == "t" || name == "stretch" || name == "x" || name == "y" || name == "z") {
+    const std::string known =
+        symbols_.variables.empty() ? "expected a constant" : "known are " + listed(symbols_.variables);
+    fail(at, fmt::format("\"{}\" is not known here; {}", name, known));
+  }
+  std::vector<std::string> known = symbols_.variables;
+  known.emplace_back("pi");
+  if (symbols_.dx) known.emplace_back("dx");
+  if (symbols_.horizon) known.emplace_back("horizon");
+  const std::string shown = listed(known);
+  known.insert(known.end(), function_names().begin(), function_names().end());
+  known.insert(known.end(), unit_names().begin(), unit_names().end());
+  fail(at,
+       fmt::format(
+           "unknown name \"{}\"; known are {}, units after a number, and functions such as abs, sin, sqrt{}",
+           name, shown, did_you_mean(name, known)));
+}
+
+}  // namespace riven

@@ -1,0 +1,240 @@
+#include "input/shape_format.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+namespace riven {
+namespace {
+
+using kind::Integers;
+using kind::Place;
+using kind::Quantities;
+using kind::Quantity;
+using kind::Table;
+
+// Half-sizes beyond the body's dimension are infinite; this is how many are not.
+std::size_t finite_directions(const Box& box) {
+  std::size_t count = 0;
+  while (count < 3 && std::isfinite(box.half_size[count])) ++count;
+  return count;
+}
+
+Format describe_round(std::optional<Shape>& shape, bool ball) {
+  struct Form {
+    Point center{};
+    double radius = 0;
+  };
+  const auto form = std::make_shared<Form>();
+  if (shape && std::holds_alternative<Disc>(*shape))
+    *form = {std::get<Disc>(*shape).center, std::get<Disc>(*shape).radius};
+  if (shape && std::holds_alternative<Ball>(*shape))
+    *form = {std::get<Ball>(*shape).center, std::get<Ball>(*shape).radius};
+  return {
+      .doc = ball ? "A ball." : "A circle; in three dimensions the endless cylinder over it along z.",
+      .keys = {Key{"center", Place{&form->center}, "Its centre; the origin unless given."},
+               Key{"radius", Quantity{&form->radius, dimension::length, positive}, "Its radius."}.required()},
+      .finish = [form, &shape, ball](const Check&) {
+        if (ball)
+          shape = Ball{form->center, form->radius};
+        else
+          shape = Disc{form->center, form->radius};
+      }};
+}
+
+Format describe_box(std::optional<Shape>& shape) {
+  struct Form {
+    Point size;
+    std::optional<Point> center, from;
+  };
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  const auto form = std::make_shared<Form>(Form{{endless, endless, endless}, {}, {}});
+  if (shape && std::holds_alternative<Box>(*shape)) {
+    const Box& box = std::get<Box>(*shape);
+    form->center = box.center;
+    for (std::size_t i = 0; i < 3; ++i)
+      if (box.half_size[i] > 0) form->size[i] = 2 * box.half_size[i];  // a shape not read yet has none
+  }
+  return {.doc = "A rectangle or box parallel to the axes.",
+          .keys = {Key{"size", Place{&form->size, positive}, "Its edges along the axes."}.required(),
+                   Key{"center", Place{&form->center}, "Its centre; the origin unless given."},
+                   Key{"from", Place{&form->from}, "Its lower corner, instead of its centre."}},
+          .groups = {{{"center", "from"}, false}},
+          .finish = [form, &shape](const Check&) {
+            Box box{form->center.value_or(Point{}), {}};
+            for (std::size_t i = 0; i < 3; ++i) {
+              box.half_size[i] = form->size[i] / 2;
+              if (form->from && std::isfinite(form->size[i]))
+                box.center[i] = (*form->from)[i] + box.half_size[i];
+            }
+            shape = box;
+          }};
+}
+
+template <class Wanted>
+std::function<bool()> holds(const std::optional<Shape>& shape) {
+  return [&shape] { return shape && std::holds_alternative<Wanted>(*shape); };
+}
+
+// ---- the body ----
+
+struct LatticeBoxForm {
+  std::vector<double> size, from;
+  std::optional<double> thickness, area, spacing;
+  std::vector<int> points;
+};
+
+LatticeBoxForm lattice_box_form(const LatticeInput& lattice) {
+  LatticeBoxForm form;
+  const Box* box = std::get_if<Box>(&lattice.shape);
+  if (box == nullptr || lattice.spacing == 0) return form;
+  for (std::size_t i = 0; i < finite_directions(*box); ++i) {
+    form.size.push_back(2 * box->half_size[i]);
+    form.from.push_back(box->center[i] - box->half_size[i]);
+  }
+  if (lattice.dimension == 2) form.thickness = lattice.thickness;
+  if (lattice.dimension == 1) form.area = lattice.thickness;
+  form.spacing = lattice.spacing;
+  return form;
+}
+
+double spacing_of(const LatticeBoxForm& form, const Check& check) {
+  if (form.spacing) return *form.spacing;
+  if (form.points.size() != form.size.size())
+    check.fail("points", fmt::format("has {} entries; expected {}, one per direction", form.points.size(),
+                                     form.size.size()));
+  const double spacing = form.size[0] / form.points[0];
+  for (std::size_t i = 1; i < form.size.size(); ++i) {
+    const double other = form.size[i] / form.points[i];
+    if (std::abs(other - spacing) > 1e-9 * spacing)
+      check.fail(
+          "points",
+          fmt::format("gives a spacing of {:.6g} m in one direction and {:.6g} m in another; expected equal "
+                      "spacing, such as {} points instead of {}",
+                      spacing, other, std::max(1L, std::lround(form.size[i] / spacing)), form.points[i]));
+  }
+  return spacing;
+}
+
+void check_lattice_box(const LatticeBoxForm& form, const Check& check) {
+  const std::size_t dimension = form.size.size();
+  if (!form.from.empty() && form.from.size() != dimension)
+    check.fail("from",
+               fmt::format("has {} entries; expected {}, as many as size", form.from.size(), dimension));
+  if (dimension == 2 && !form.thickness)
+    check.fail("thickness", "missing; a body in two dimensions needs it, such as \"10 mm\"");
+  if (dimension == 1 && !form.area)
+    check.fail("area", "missing; a body in one dimension needs its cross-section, such as \"1 mm^2\"");
+  if (dimension != 2 && form.thickness)
+    check.fail("thickness",
+               fmt::format("belongs to bodies in two dimensions; size has {} entries", dimension));
+  if (dimension != 1 && form.area)
+    check.fail("area", fmt::format("belongs to bodies in one dimension; size has {} entries", dimension));
+}
+
+LatticeInput to_lattice(const LatticeBoxForm& form, const Check& check) {
+  check_lattice_box(form, check);
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  Box box{{}, {endless, endless, endless}};
+  for (std::size_t i = 0; i < form.size.size(); ++i) {
+    box.half_size[i] = form.size[i] / 2;
+    if (!form.from.empty()) box.center[i] = form.from[i] + form.size[i] / 2;
+  }
+  LatticeInput lattice;
+  lattice.shape = box;
+  lattice.dimension = static_cast<int>(form.size.size());
+  lattice.thickness = form.thickness.value_or(form.area.value_or(1));
+  lattice.spacing = spacing_of(form, check);
+  for (const double size : form.size)
+    if (lattice.spacing > size)
+      check.fail(
+          form.spacing ? "spacing" : "points",
+          fmt::format("the spacing {:.6g} m is larger than the body ({:.6g} m)", lattice.spacing, size));
+  return lattice;
+}
+
+Format describe_lattice_box(LatticeInput& lattice) {
+  const auto form = std::make_shared<LatticeBoxForm>(lattice_box_form(lattice));
+  return {
+      .doc = "A bar, rectangle or box, centred at the origin unless `from` is given.",
+      .keys = {Key{"size", Quantities{&form->size, dimension::length, positive, 3},
+                   "Its edges along the axes; as many as the body has dimensions."}
+                   .required(),
+               Key{"from", Quantities{&form->from, dimension::length, any_number, 3}, "Its lower corner."},
+               Key{"thickness", Quantity{&form->thickness, dimension::length, positive},
+                   "Two dimensions only: its thickness."},
+               Key{"area", Quantity{&form->area, dimension::area, positive},
+                   "One dimension only: its cross-section."},
+               Key{"spacing", Quantity{&form->spacing, dimension::length, positive},
+                   "Distance of the points; known as `dx` from here on."},
+               Key{"points", Integers{&form->points, 1},
+                   "Number of points along the axes, instead of the spacing."}},
+      .groups = {{{"spacing", "points"}}},
+      .finish = [form, &lattice](const Check& check) { lattice = to_lattice(*form, check); }};
+}
+
+Format describe_lattice_disc(LatticeInput& lattice) {
+  struct Form {
+    Disc disc;
+    double thickness = 0, spacing = 0;
+  };
+  const auto form = std::make_shared<Form>();
+  if (const Disc* disc = std::get_if<Disc>(&lattice.shape))
+    *form = {*disc, lattice.thickness, lattice.spacing};
+  return {.doc = "A disc.",
+          .keys = {Key{"center", Place{&form->disc.center}, "Its centre; the origin unless given."},
+                   Key{"radius", Quantity{&form->disc.radius, dimension::length, positive}, "Its radius."}
+                       .required(),
+                   Key{"thickness", Quantity{&form->thickness, dimension::length, positive}, "Its thickness."}
+                       .required(),
+                   Key{"spacing", Quantity{&form->spacing, dimension::length, positive},
+                       "Distance of the points; known as `dx` from here on."}
+                       .required()},
+          .finish = [form, &lattice](const Check& check) {
+            if (form->spacing > form->disc.radius) check.fail("spacing", "is larger than the radius");
+            lattice.shape = form->disc;
+            lattice.dimension = 2;
+            lattice.thickness = form->thickness;
+            lattice.spacing = form->spacing;
+          }};
+}
+
+}  // namespace
+
+std::vector<Key> shape_keys(std::optional<Shape>& shape) {
+  return {
+      Key{"disc", Table{[&shape] { return describe_round(shape, false); }, holds<Disc>(shape)}, "A circle."},
+      Key{"box", Table{[&shape] { return describe_box(shape); }, holds<Box>(shape)}, "A rectangle or box."},
+      Key{"ball", Table{[&shape] { return describe_round(shape, true); }, holds<Ball>(shape)},
+          "A ball; three dimensions only."}};
+}
+
+Format describe(GeometryInput& geometry) {
+  LatticeInput& lattice = geometry.lattice;
+  const auto is_box = [&lattice] { return std::holds_alternative<Box>(lattice.shape); };
+  return {.doc = "The body: a shape filled with points on a square or cubic lattice, and the horizon.",
+          .at = &lattice.at,
+          .keys = {Key{"box", Table{[&lattice] { return describe_lattice_box(lattice); }, is_box},
+                       "A bar, rectangle or box."},
+                   Key{"disc",
+                       Table{[&lattice] { return describe_lattice_disc(lattice); },
+                             [is_box] { return !is_box(); }},
+                       "A disc."},
+                   Key{"horizon", Quantity{&geometry.horizon, dimension::length, positive},
+                       "Radius within which points interact."}
+                       .otherwise("\"3 dx\"")},
+          .groups = {{{"box", "disc"}}},
+          .finish = [&geometry](const Check& check) {
+            geometry.horizon_at = check.at("horizon");
+            // Rounding must not refuse "1 dx".
+            if (geometry.horizon < geometry.lattice.spacing * (1 - 1e-9))
+              check.fail(
+                  "horizon",
+                  fmt::format(
+                      "{:.6g} m is below the spacing of {:.6g} m; expected a few spacings, such as \"3 dx\"",
+                      geometry.horizon, geometry.lattice.spacing));
+          }};
+}
+
+}  // namespace riven

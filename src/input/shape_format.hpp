@@ -1,0 +1,13 @@
+#pragma once
+
+#include "input/format.hpp"
+
+namespace riven {
+
+/// The keys disc, box and ball of a hole, an inclusion or a set.
+std::vector<Key> shape_keys(std::optional<Shape>& shape);
+
+/// [geometry]
+Format describe(GeometryInput& geometry);
+
+}  // namespace riven
