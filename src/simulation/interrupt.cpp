@@ -20,6 +20,8 @@ void watch_interrupts() {
   std::signal(SIGTERM, request);
 }
 
-bool interrupt_requested() { return requested != 0; }
+bool interrupt_requested() {
+  return requested != 0;
+}
 
 }  // namespace riven
