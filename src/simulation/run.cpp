@@ -118,18 +118,20 @@ Summary run_case(const Case& input, const RunOptions& options) {
   for (const std::string& warning : warnings(simulation)) log.warning(warning);
   Recorder recorder(simulation, probes, folder, screen, log);
   watch_interrupts();
-  const RunStatus status = march_on(simulation, recorder, screen, log, options);
-
-  Summary summary;
-  try {
-    recorder.keep_last();
-    summary = summary_of(recorder, simulation, status, options, seconds_since(start));
-    write_summary(folder.summary(), summary);
-  } catch (const std::exception& problem) {  // a full disk, mostly: what is there already stays
-    log.error(problem.what());
-    summary.status = RunStatus::failed;
-    return summary;
-  }
+  RunStatus status = march_on(simulation, recorder, screen, log, options);
+  // What follows fails on a full disk, mostly; each part is worth trying.
+  const auto try_to = [&](const auto& write) {
+    try {
+      write();
+    } catch (const std::exception& problem) {
+      log.error(problem.what());
+      status = RunStatus::failed;
+    }
+  };
+  try_to([&] { recorder.keep_last(); });
+  Summary summary = summary_of(recorder, simulation, status, options, seconds_since(start));
+  try_to([&] { write_summary(folder.summary(), summary); });
+  summary.status = status;
   log.info(fmt::format("{} in {:.1f} s, {} force evaluations, {:.0f} million bonds/s, energy balance {:.1e}",
                        name(status), summary.timing.wall_s, recorder.last().evaluations,
                        1e-6 * summary.timing.bond_evaluations_per_second, summary.energy.balance_error));
