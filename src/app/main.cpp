@@ -66,11 +66,11 @@ std::string wrong_arguments(const CLI::App& program, const CLI::ParseError& erro
   return fmt::format("{}; \"{} --help\" shows what is expected", what, command);
 }
 
-/// Prints the help of a command, or of the program.
-int help(const CLI::App& program, const std::string& command) {
+/// Prints the help of a command, or the overview of all.
+int help(const CLI::App& program, const std::string& overview, const std::string& command) {
   if (const auto wrong = command.empty() ? std::nullopt : wrong_command(program, command))
     throw InputError(*wrong);
-  fmt::print("{}", command.empty() ? program.help() : program.get_subcommand(command)->help("riven"));
+  fmt::print("{}", command.empty() ? overview : program.get_subcommand(command)->help("riven"));
   return kDone;
 }
 
@@ -146,14 +146,15 @@ int main(int argc, char** argv) {
     return static_cast<int>(kDone);
   });
 
-  std::string topic;
+  std::string topic, overview;
   on(program.add_subcommand("help", "Explain a command"), [&] {
-    return help(program, topic);
+    return help(program, overview, topic);
   })->add_option("command", topic, "The command");
 
+  overview = program.help();      // once a command is chosen, this gives the command's own
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files shows as a full disk does, with a message
   if (argc < 2) {
-    fmt::print(stderr, "{}", program.help());
+    fmt::print(stderr, "{}", overview);
     return kWrongInput;
   }
   if (const auto wrong = wrong_command(program, argv[1])) {
