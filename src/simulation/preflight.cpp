@@ -115,6 +115,15 @@ void check_step(const Simulation& simulation) {
                                *solver.step, limit));
 }
 
+/// Whether the loads displace the body before they have begun.
+bool jumps_at_start(const Simulation& simulation) {
+  std::vector<double> u(simulation.model->dofs(), 0.0);
+  simulation.constraints->set_parameter(simulation.parameter == Parameter::time ? 0 : 1);
+  simulation.constraints->apply(u);
+  const double noticeable = 1e-6 * simulation.model->body().lattice.spacing();
+  return std::any_of(u.begin(), u.end(), [&](double value) { return !(std::abs(value) <= noticeable); });
+}
+
 double points_along(const Shape& shape, double spacing, std::size_t axis) {
   if (const auto* box = std::get_if<Box>(&shape)) return std::ceil(2 * box->half_size[axis] / spacing - 1e-6);
   const double radius =
@@ -182,6 +191,9 @@ std::vector<std::string> warnings(const Simulation& simulation) {
   if (simulation.input.loads.empty()) list.push_back("there is no load: nothing will move");
   if (simulation.input.probes.empty())
     list.push_back("there is no probe: history.csv and the metrics will be empty");
+  if (jumps_at_start(simulation))
+    list.push_back(fmt::format("the loads are not zero at {}: the body starts with a jump",
+                               simulation.parameter == Parameter::time ? "time 0" : "stretch 1"));
   const auto* box = std::get_if<Box>(&body.shape);
   for (const Shape& inclusion : body.defects.inclusions) {
     bool near = false;

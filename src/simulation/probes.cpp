@@ -46,7 +46,17 @@ Point moved(const Point& x, const Point& u) {
 }  // namespace
 
 Probes::Probes(const Simulation& simulation) : simulation_(simulation) {
-  for (const ProbeInput& probe : simulation.input.probes) add_columns(probe);
+  for (const ProbeInput& probe : simulation.input.probes) {
+    const std::size_t before = columns_.size();
+    add_columns(probe);
+    for (std::size_t n = before; n < columns_.size(); ++n)
+      for (std::size_t other = 0; other < before; ++other)
+        if (columns_[n].name == columns_[other].name)
+          throw InputError(probe.at,
+                           fmt::format("probe {}: gives the metric {}, which a probe above gives too; "
+                                       "expected another name",
+                                       probe.name, columns_[n].name));
+  }
   const std::vector<double> rest(simulation.model->dofs(), 0.0);
   const DisplacementField field(*simulation.model, rest);
   for (const ProbeInput& probe : simulation.input.probes)

@@ -117,6 +117,17 @@ class Results(ProgramTest):
         self.assertLess(abs(summary["energy"]["balance_error"]), 5e-3)
         self.assertNotIn("iterations", summary["timing"])
 
+    def test_a_load_that_begins_late(self):
+        # Until then there is nothing but rounding, which must not count as energy from nowhere.
+        late = replaced(MOVING, "1e4 /s^2 * x * t*t", "10 /s * x * max(0 s, t - 2 ms)")
+        self.command("run", self.write("late.toml", late))
+        rows = history(self.top / "results/late")[1]
+        self.assertAlmostEqual(rows[1][1], 0, delta=1e-6)
+        self.assertGreater(rows[-1][1], 1)
+        rest = MOVING[:MOVING.index("[[load]]")] + MOVING[MOVING.index("[solver]"):]
+        done = self.command("run", self.write("rest.toml", rest))
+        self.assertIn("warning: there is no load", done.stderr)
+
     def test_overrides_are_what_ran(self):
         self.command("run", self.write("sheet.toml", PLAIN), "--set", "solver.stretch=[1.1]", "--set",
                      "material.rubber.youngs_modulus=12 MPa", "-o", "out")
@@ -188,6 +199,11 @@ class Screen(ProgramTest):
         self.assertTrue(lines[-1].startswith("results: results/sheet/ "), lines[-1])
 
     def test_what_is_rarely_meant_is_said(self):
+        self.assertNotIn("warning", self.command("run", self.write("plain.toml", PLAIN)).stderr)
+        self.assertNotIn("warning", self.command("run", self.write("moving.toml", MOVING)).stderr)
+        jump = replaced(MOVING, "1e4 /s^2 * x * t*t", "1e4 /s^2 * x * t*t + 1 mm")
+        said = self.command("check", self.write("jump.toml", jump)).stdout
+        self.assertIn("# warning: the loads are not zero at time 0", said)
         text = replaced(PLAIN, 'horizon = "3 dx"', 'horizon = "2 dx"')
         self.assertIn("warning: the horizon is 2 spacings", self.command("run", self.write("s.toml", text)).stderr)
 

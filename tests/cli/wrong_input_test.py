@@ -61,6 +61,7 @@ MISTAKES = [
     ("long step", MOVING, 'until = "4 ms"', 'until = "4 ms"\nstep = "1 ms"', "[solver]", "above the stable step"),
     ("probe outside", HOLE, 'from = ["-30 mm", 0]', 'from = ["-30 m", 0]', "[[probe]]", "there is no material at"),
     ("probe in the hole", HOLE, 'from = ["-30 mm", 0]', "from = [0, 0]", "[[probe]]", "there is no material at"),
+    ("one metric twice", HOLE, '"hole_x"', '"force_x"', "[[probe]]", "gives the metric force_x, which a probe above"),
     ("body of three dimensions", PLAIN, 'size = ["0.2 m", "0.2 m"], thickness = "10 mm", points = [20, 20]',
      'size = ["0.2 m", "0.2 m", "0.2 m"], points = [6, 6, 6]', "displacement", "expected 3"),
     ("too many points", PLAIN, "points = [20, 20]", "points = [2000000, 2000000]", "[geometry]", "expected a larger spacing"),
