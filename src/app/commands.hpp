@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -8,23 +9,26 @@ namespace riven::app {
 
 /// What the user asked for on the command line, one member per option that commands share.
 struct Options {
-  std::string target;                   // case file, topic or result folder
-  std::vector<std::string> set;         // --set path=value
-  std::filesystem::path output;         // -o; empty: the default
+  std::string target;            // case file, topic or result folder
+  std::vector<std::string> set;  // --set path=value
+  std::filesystem::path output;  // -o; empty: the default
   bool force = false;
-  int threads = 0;                      // 0: all cores
+  int threads = 0;  // 0: all cores
 };
 
 struct CompareOptions {
   std::filesystem::path folder;
   std::filesystem::path reference;
-  std::string exclude_within;           // a length, or "1 horizon"
-  std::string tolerance;                // "1 %"; empty: report only
-  std::string history;                  // metric=column; empty: the displacement field
+  std::string exclude_within;  // a length, or "1 horizon"
+  std::string tolerance;       // "1 %"; empty: report only
+  std::string history;         // metric=column; empty: the displacement field
   bool json = false;
 };
 
 enum ExitCode : int { kDone = 0, kMissed = 1, kWrongInput = 2, kFailed = 3, kInterrupted = 130 };
+
+/// Runs a command; an exception becomes one message on standard error and the exit code that belongs to it.
+int guarded(const std::function<int()>& command);
 
 int run(const Options& options);
 int check(const Options& options);

@@ -39,9 +39,11 @@ int compare(const CompareOptions& options) {
   if (!options.history.empty()) {
     const auto equals = options.history.find('=');
     if (equals == std::string::npos)
-      throw InputError(fmt::format("--history {}: expected metric=column, as in force_x=Fx_right_N", options.history));
-    const HistoryDeviation deviation = compare_history(folder.history(), options.reference, options.history.substr(0, equals),
-                                                       options.history.substr(equals + 1));
+      throw InputError(
+          fmt::format("--history {}: expected metric=column, as in force_x=Fx_right_N", options.history));
+    const HistoryDeviation deviation =
+        compare_history(folder.history(), options.reference, options.history.substr(0, equals),
+                        options.history.substr(equals + 1));
     print(deviation, options.json);
     return judged(deviation.relative_l2, tolerance);
   }
@@ -49,14 +51,16 @@ int compare(const CompareOptions& options) {
   const Case input = read_case(folder.resolved());
   double exclude_within = 0;
   if (!options.exclude_within.empty())
-    exclude_within = parse_quantity(options.exclude_within, dimension::length,
-                                    {.dx = input.geometry.lattice.spacing, .horizon = input.geometry.horizon, .variables = {}},
-                                    Origin{"--exclude-within", {}});
+    exclude_within = parse_quantity(
+        options.exclude_within, dimension::length,
+        {.dx = input.geometry.lattice.spacing, .horizon = input.geometry.horizon, .variables = {}},
+        Origin{"--exclude-within", {}});
   const FieldDeviation deviation = compare_fields(options.folder, read_reference_points(options.reference),
                                                   compare_settings(input, exclude_within));
   print(deviation, options.json);
   int code = kDone;
-  for (const StateDeviation& state : deviation.states) code = std::max(code, judged(state.relative_l2, tolerance));
+  for (const StateDeviation& state : deviation.states)
+    code = std::max(code, judged(state.relative_l2, tolerance));
   return code;
 }
 

@@ -1,101 +1,188 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
+#include <optional>
 
 #include "app/commands.hpp"
 #include "base/error.hpp"
+#include "base/nearest_name.hpp"
 
 namespace {
 
 using namespace riven;
 using namespace riven::app;
 
-/// Options that every command that reads a case has.
-void add_case_options(CLI::App& command, Options& options, const char* target) {
-  command.add_option("case", options.target, target);
-  command.add_option("--set", options.set, "Override a key of the case: path.to.key=value (may be repeated)")
-      ->type_size(1)
-      ->allow_extra_args(false);
+std::vector<std::string> command_names(const CLI::App& program) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
+  return names;
 }
 
-void add_run_options(CLI::App& command, Options& options) {
-  command.add_option("--threads", options.threads, "Number of threads (default: all cores)")->check(CLI::PositiveNumber);
+/// What is wrong with the first word, if it is no command.
+std::optional<std::string> wrong_command(const CLI::App& program, const std::string& word) {
+  const std::vector<std::string> names = command_names(program);
+  if (word.starts_with('-') || std::find(names.begin(), names.end(), word) != names.end())
+    return std::nullopt;
+  if (word.ends_with(".toml"))
+    return fmt::format("{}: expected a command first; did you mean \"riven run {}\"?", word, word);
+  return fmt::format("{}: unknown command; expected one of {}{}", word, listed(names),
+                     did_you_mean(word, names));
 }
 
-int guarded(const std::function<int()>& command) {
-  try {
-    return command();
-  } catch (const InputError& error) {
-    fmt::print(stderr, "error: {}\n", error.what());
-    return kWrongInput;
-  } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "error: not enough memory; try a coarser spacing (riven check estimates the need)\n");
-    return kFailed;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "error: {}\n", error.what());
-    return kFailed;
+/// One line in Riven's words about arguments that do not fit.
+std::string wrong_arguments(const CLI::App& program, const CLI::ParseError& error) {
+  const auto chosen = program.get_subcommands();
+  const std::string command = chosen.empty() ? "riven" : "riven " + chosen.front()->get_name();
+  std::string what = error.what();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !chosen.empty()) {
+    std::vector<std::string> options;
+    for (const CLI::Option* option : chosen.front()->get_options())
+      for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    const std::vector<std::string> extras = program.remaining(true);
+    const auto dashed = std::find_if(extras.begin(), extras.end(),
+                                     [](const std::string& word) { return word.starts_with('-'); });
+    what = dashed != extras.end()
+               ? fmt::format("{}: unknown option{}", *dashed, did_you_mean(*dashed, options))
+               : fmt::format("{}: one argument too many", extras.empty() ? what : extras.front());
   }
+  return fmt::format("{}; \"{} --help\" shows what is expected", what, command);
 }
+
+/// Prints the help of a command, or the overview of all.
+int help(const CLI::App& program, const std::string& overview, const std::string& command) {
+  if (const auto wrong = command.empty() ? std::nullopt : wrong_command(program, command))
+    throw InputError(*wrong);
+  fmt::print("{}", command.empty() ? overview : program.get_subcommand(command)->help("riven"));
+  return kDone;
+}
+
+/// A command is not done as long as what it printed has not arrived.
+int delivered(int code) {
+  if (std::fflush(stdout) == 0) return code;
+  fmt::print(stderr, "error: cannot write to standard output: {}\n", std::strerror(errno));
+  return kFailed;
+}
+
+/// The commands with their options; parsing runs the one that was asked for.
+class CommandLine {
+ public:
+  CommandLine() {
+    program_.require_subcommand(1);
+    program_.set_version_flag("--version", "riven " RIVEN_VERSION);
+    add_run();
+    add_check();
+    add("cases", "List the cases that ship with Riven", [] { return cases(); });
+    add_verify();
+    add_compare();
+    add_schema();
+    add("version", "Print the version", [] {
+      fmt::print("riven {}\n", RIVEN_VERSION);
+      return static_cast<int>(kDone);
+    });
+    add("help", "Explain a command", [this] {
+      return help(program_, overview_, topic_);
+    }).add_option("command", topic_, "The command");
+    overview_ = program_.help();  // once a command is chosen, this gives the command's own
+  }
+
+  int run(int argc, char** argv) {
+    if (argc < 2) {
+      fmt::print(stderr, "{}", overview_);
+      return kWrongInput;
+    }
+    if (const auto wrong = wrong_command(program_, argv[1])) return refuse(*wrong);
+    try {
+      program_.parse(argc, argv);
+    } catch (const CLI::Success& asked) {
+      return delivered(program_.exit(asked));
+    } catch (const CLI::ParseError& error) {
+      return refuse(wrong_arguments(program_, error));
+    }
+    return delivered(code_);
+  }
+
+ private:
+  static int refuse(const std::string& what) {
+    fmt::print(stderr, "error: {}\n", what);
+    return kWrongInput;
+  }
+
+  CLI::App& add(const char* name, const char* doc, std::function<int()> action) {
+    CLI::App& command = *program_.add_subcommand(name, doc);
+    command.callback([this, action = std::move(action)] { code_ = guarded(action); });
+    return command;
+  }
+
+  /// Options that every command that reads a case has.
+  CLI::Option& add_case(CLI::App& command, const char* target) {
+    command
+        .add_option("--set", options_.set, "Override a key of the case: path.to.key=value (may be repeated)")
+        ->type_size(1)
+        ->allow_extra_args(false);
+    command.add_option("--threads", options_.threads, "Number of threads (default: all cores)")
+        ->check(CLI::Range(1, 1024));
+    return *command.add_option("case", options_.target, target);
+  }
+
+  void add_run() {
+    CLI::App& command = add("run", "Run a case: riven run CASE.toml", [this] { return app::run(options_); });
+    add_case(command, "Case file, or the name of a shipped case (riven cases)").required();
+    command.add_option("-o,--output", options_.output, "Result folder (default: results/<case>)");
+    command.add_flag("--force", options_.force, "Replace an existing result");
+  }
+
+  void add_check() {
+    CLI::App& command =
+        add("check", "Check a case and print what it means, in SI units", [this] { return check(options_); });
+    add_case(command, "Case file, or the name of a shipped case").required();
+  }
+
+  void add_verify() {
+    CLI::App& command = add("verify", "Run shipped cases and hold them against their references",
+                            [this] { return verify(options_, brief_); });
+    add_case(command, "Topic or case (default: all)");
+    command.add_flag("--short", brief_, "Run the short variants of cases that have one");
+  }
+
+  void add_compare() {
+    CompareOptions& to = comparison_;
+    CLI::App& command =
+        add("compare", "Hold a result against reference points or a history", [&to] { return compare(to); });
+    command.add_option("dir", to.folder, "Result folder")->required();
+    command
+        .add_option("reference", to.reference,
+                    "CSV file: X_m, Y_m, ux_m, uy_m, and lambda, stretch, t_s or time")
+        ->required();
+    command.add_option("--exclude-within", to.exclude_within,
+                       "Leave out points nearer than this to an edge of a defect: \"15 mm\", \"1 horizon\"");
+    command.add_option("--tolerance", to.tolerance, "Exit with 1 when a relative L2 deviation is above: 1%");
+    command.add_option("--history", to.history, "Compare a column of history.csv instead: metric=column");
+    command.add_flag("--json", to.json, "Print JSON");
+  }
+
+  void add_schema() {
+    CLI::App& command =
+        add("schema", "Print the JSON Schema of the case format", [this] { return schema(markdown_); });
+    command.add_flag("--markdown", markdown_, "Print the reference page instead");
+  }
+
+  CLI::App program_{"Riven: how rubber, glass and shells deform and break, by peridynamics", "riven"};
+  std::string overview_;
+  Options options_;
+  CompareOptions comparison_;
+  bool brief_ = false, markdown_ = false;
+  std::string topic_;  // of help
+  int code_ = kDone;
+};
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program("Riven: how rubber, glass and shells deform and break, by peridynamics", "riven");
-  program.require_subcommand(1);
-  Options options;
-  CompareOptions comparison;
-  bool brief = false, markdown = false;
-  int code = kDone;
-  const auto on = [&](CLI::App* command, std::function<int()> action) {
-    command->callback([&code, action = std::move(action)] { code = guarded(action); });
-    return command;
-  };
-
-  CLI::App* run_command = on(program.add_subcommand("run", "Run a case: riven run CASE.toml"), [&] { return run(options); });
-  add_case_options(*run_command, options, "Case file, or the name of a shipped case (riven cases)");
-  add_run_options(*run_command, options);
-  run_command->add_option("-o,--output", options.output, "Result folder (default: results/<case>)");
-  run_command->add_flag("--force", options.force, "Replace an existing result");
-  run_command->get_option("case")->required();
-
-  CLI::App* check_command = on(program.add_subcommand("check", "Check a case and print what it means, in SI units"),
-                               [&] { return check(options); });
-  add_case_options(*check_command, options, "Case file, or the name of a shipped case");
-  check_command->get_option("case")->required();
-
-  on(program.add_subcommand("cases", "List the cases that ship with Riven"), [] { return cases(); });
-
-  CLI::App* verify_command = on(program.add_subcommand("verify", "Run shipped cases and hold them against their references"),
-                                [&] { return verify(options, brief); });
-  add_case_options(*verify_command, options, "Topic or case (default: all)");
-  add_run_options(*verify_command, options);
-  verify_command->add_flag("--short", brief, "Run the short variants of cases that have one");
-
-  CLI::App* compare_command = on(program.add_subcommand("compare", "Hold a result against reference points or a history"),
-                                 [&] { return compare(comparison); });
-  compare_command->add_option("dir", comparison.folder, "Result folder")->required();
-  compare_command->add_option("reference", comparison.reference, "CSV file: X_m, Y_m, ux_m, uy_m, and lambda, stretch, t_s or time")
-      ->required();
-  compare_command->add_option("--exclude-within", comparison.exclude_within,
-                              "Leave out points nearer than this to an edge of a defect: \"15 mm\", \"1 horizon\"");
-  compare_command->add_option("--tolerance", comparison.tolerance, "Exit with 1 when a relative L2 deviation is above: 1%");
-  compare_command->add_option("--history", comparison.history, "Compare a column of history.csv instead: metric=column");
-  compare_command->add_flag("--json", comparison.json, "Print JSON");
-
-  CLI::App* schema_command = on(program.add_subcommand("schema", "Print the JSON Schema of the case format"),
-                                [&] { return schema(markdown); });
-  schema_command->add_flag("--markdown", markdown, "Print the reference page instead");
-
-  on(program.add_subcommand("version", "Print the version"), [] {
-    fmt::print("riven {}\n", RIVEN_VERSION);
-    return static_cast<int>(kDone);
-  });
-
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? kDone : kWrongInput;
-  }
-  return code;
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files shows as a full disk does, with a message
+  return CommandLine().run(argc, argv);
 }

@@ -2,6 +2,7 @@
 
 #include "app/commands.hpp"
 #include "input/case_reader.hpp"
+#include "simulation/preflight.hpp"
 #include "simulation/run.hpp"
 
 namespace riven::app {
@@ -9,10 +10,12 @@ namespace riven::app {
 int run(const Options& options) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
   const auto file = find_case(options.target);
-  const Case input = read_case(file, options.set);
-  const Summary summary = run_case(input, {.folder = options.output.empty() ? default_output(file) : options.output,
-                                           .force = options.force,
-                                           .case_name = case_name(file)});
+  Case input = read_case(file, options.set);
+  if (!options.set.empty()) drop_unreached_expectations(input);
+  const Summary summary =
+      run_case(input, {.folder = options.output.empty() ? default_output(file) : options.output,
+                       .force = options.force,
+                       .case_name = case_name(file)});
   if (summary.status == RunStatus::interrupted) return kInterrupted;
   return summary.status == RunStatus::finished ? kDone : kFailed;
 }

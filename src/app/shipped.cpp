@@ -26,7 +26,8 @@ std::vector<fs::path> shipped_files() {
 }
 
 bool is_shipped(const fs::path& file) {
-  const fs::path relative = fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(cases_folder()));
+  const fs::path relative =
+      fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(cases_folder()));
   return !relative.empty() && *relative.begin() != "..";
 }
 
@@ -43,20 +44,24 @@ fs::path find_case(const std::string& target) {
   if (fs::exists(shipped)) return shipped;
   std::vector<std::string> names;
   for (const fs::path& file : shipped_files()) names.push_back(case_name(file));
-  throw InputError(fmt::format("{}: no such file; expected a case file in TOML or the name of a shipped case (riven cases "
-                               "lists them){}",
-                               target, did_you_mean(target, names)));
+  throw InputError(
+      fmt::format("{}: no such file; expected a case file in TOML or the name of a shipped case (riven cases "
+                  "lists them){}",
+                  target, did_you_mean(target, names)));
 }
 
 std::string case_name(const fs::path& case_file) {
   if (is_shipped(case_file)) {
-    fs::path relative = fs::weakly_canonical(case_file).lexically_relative(fs::weakly_canonical(cases_folder()));
+    fs::path relative =
+        fs::weakly_canonical(case_file).lexically_relative(fs::weakly_canonical(cases_folder()));
     return relative.replace_extension().generic_string();
   }
   return case_file.stem().string();
 }
 
-fs::path default_output(const fs::path& case_file) { return fs::path("results") / case_name(case_file); }
+fs::path default_output(const fs::path& case_file) {
+  return fs::path("results") / case_name(case_file);
+}
 
 int cases() {
   std::string topic;

@@ -171,7 +171,11 @@ Format describe_lattice_box(LatticeInput& lattice) {
                Key{"points", Integers{&form->points, 1},
                    "Number of points along the axes, instead of the spacing."}},
       .groups = {{{"spacing", "points"}}},
-      .finish = [form, &lattice](const Check& check) { lattice = to_lattice(*form, check); }};
+      .finish = [form, &lattice](const Check& check) {
+        const Location at = lattice.at;  // set by the table around this one
+        lattice = to_lattice(*form, check);
+        lattice.at = at;
+      }};
 }
 
 Format describe_lattice_disc(LatticeInput& lattice) {

@@ -41,6 +41,8 @@ Log::Log(std::ostream& screen, std::function<void()> before_message) {
   sink->set_level(spdlog::level::info);
   logger_ = std::make_shared<spdlog::logger>("riven", std::move(sink));
   logger_->set_level(spdlog::level::debug);
+  // A log that cannot be written must not hide the message about why.
+  logger_->set_error_handler([](const std::string&) {});
   logger_->flush_on(spdlog::level::debug);  // a killed run keeps what it said
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "load/mirror.hpp"
+#include "simulation/preflight.hpp"
 #include "simulation/simulation.hpp"
 
 namespace riven {
@@ -25,8 +26,9 @@ InvariantLaw make_law(const MaterialInput& in) {
 Material make_material(const MaterialInput& in) {
   const Material material{in.name, make_law(in), in.density};
   if (!(shear_modulus(material.law) > 0))
-    throw InputError(in.at, fmt::format("material.{}: the shear modulus is {:g} Pa; expected a law with a positive one",
-                                        in.name, shear_modulus(material.law)));
+    throw InputError(
+        in.at, fmt::format("material.{}: the shear modulus is {:g} Pa; expected a law with a positive one",
+                           in.name, shear_modulus(material.law)));
   return material;
 }
 
@@ -50,9 +52,10 @@ Defects make_defects(const Case& in) {
   for (std::size_t a = 0; a < placed.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)
       if (overlap(placed[a].shape, placed[b].shape, touch))
-        throw InputError(placed[a].at, fmt::format("this shape overlaps the one at {}; expected holes and inclusions apart "
-                                                   "from each other",
-                                                   placed[b].at.text()));
+        throw InputError(placed[a].at,
+                         fmt::format("this shape overlaps the one at {}; expected holes and inclusions apart "
+                                     "from each other",
+                                     placed[b].at.text()));
   return defects;
 }
 
@@ -87,12 +90,14 @@ PointSet make_set(const SetInput& in, const LatticeBody& body) {
   const double touch = 1e-9 * body.lattice.spacing();
   for (const std::size_t i : body.points) {
     const Point x = body.lattice.position(i);
-    const bool inside = in.where ? (*in.where)(Variables{.position = x}) != 0 : signed_distance(*in.shape, x) <= touch;
+    const bool inside =
+        in.where ? (*in.where)(Variables{.position = x}) != 0 : signed_distance(*in.shape, x) <= touch;
     if (inside) set.points.push_back(i);
   }
   if (set.points.empty())
-    throw InputError(in.at, fmt::format("set.{}: the set is empty; expected at least one of the body's {} points in it",
-                                        in.name, body.points.size()));
+    throw InputError(
+        in.at, fmt::format("set.{}: the set is empty; expected at least one of the body's {} points in it",
+                           in.name, body.points.size()));
   return set;
 }
 
@@ -108,9 +113,7 @@ LoadFunction make_function(const Expression& expression, Parameter parameter) {
 class LoadBuilder {
  public:
   explicit LoadBuilder(Simulation& simulation)
-      : simulation_(simulation),
-        body_(simulation.model->body()),
-        loaded_(simulation.model->dofs(), false) {}
+      : simulation_(simulation), body_(simulation.model->body()), loaded_(simulation.model->dofs(), false) {}
 
   void build() {
     for (const LoadInput& load : simulation_.input.loads)
@@ -134,18 +137,22 @@ class LoadBuilder {
       const auto& value = load.displacement[axis].value;
       if (!value) continue;
       auto& given = faces_[face]->displacement[axis];
-      if (given) throw InputError(on.at, fmt::format("load: component {} of the edge \"{}\" is displaced twice", axis, on.text));
+      if (given)
+        throw InputError(
+            on.at, fmt::format("load: component {} of the edge \"{}\" is displaced twice", axis, on.text));
       given = make_function(*value, simulation_.parameter);
     }
   }
 
-  /// Mirror layers hold the normal component; a tangential one alone would hold the edge's normal strain at zero.
+  /// Mirror layers hold the normal component; a tangential one alone would hold the edge's normal strain at
+  /// zero.
   void check_face(std::size_t face) const {
     if (!faces_[face] || faces_[face]->displacement[face / 2]) return;
-    throw InputError(face_at_[face],
-                     fmt::format("load: the edge \"{}\" is displaced along itself only; expected its normal component too "
-                                 "(component {} of displacement), or a set of points instead of the edge",
-                                 kFaceNames[face], face / 2));
+    throw InputError(
+        face_at_[face],
+        fmt::format("load: the edge \"{}\" is displaced along itself only; expected its normal component too "
+                    "(component {} of displacement), or a set of points instead of the edge",
+                    kFaceNames[face], face / 2));
   }
 
   void displace_set(const LoadInput& load, const Named& on) {
@@ -158,9 +165,10 @@ class LoadBuilder {
       for (const std::size_t point : set.points) {
         const std::size_t dof = axis * body_.lattice.size() + point;
         if (loaded_[dof])
-          throw InputError(on.at, fmt::format("load: points of \"{}\" are displaced twice; expected sets without common "
-                                              "points, or other components free",
-                                              on.text));
+          throw InputError(
+              on.at, fmt::format("load: points of \"{}\" are displaced twice; expected sets without common "
+                                 "points, or other components free",
+                                 on.text));
         loaded_[dof] = true;
         simulation_.constraints->add(
             {.slave = dof,
@@ -176,7 +184,8 @@ class LoadBuilder {
       for (std::size_t d = 0; d < 3; ++d) {
         Constraint constraint{.slave = simulation_.model->inclusion_dof(n) + d, .terms = {}};
         if (d < 2)
-          constraint.terms.push_back({[](const Point&, double) { return 0.0; }, Point{}, static_cast<int>(d), 1, number});
+          constraint.terms.push_back(
+              {[](const Point&, double) { return 0.0; }, Point{}, static_cast<int>(d), 1, number});
         simulation_.constraints->add(std::move(constraint));
       }
     }
@@ -198,7 +207,8 @@ std::optional<std::size_t> Simulation::face(const std::string& name) {
 }
 
 const PointSet& Simulation::set(const std::string& name) const {
-  const auto found = std::find_if(sets.begin(), sets.end(), [&](const PointSet& s) { return s.name == name; });
+  const auto found =
+      std::find_if(sets.begin(), sets.end(), [&](const PointSet& s) { return s.name == name; });
   if (found == sets.end()) throw InputError(fmt::format("no set is called \"{}\"", name));
   return *found;
 }
@@ -217,6 +227,7 @@ double Simulation::face_area(std::size_t face) const {
 }
 
 Simulation build_simulation(const Case& input) {
+  check_memory(input.geometry);
   Simulation simulation;
   simulation.input = input;
   simulation.parameter = input.solver.method == "verlet" ? Parameter::time : Parameter::stretch;

@@ -8,9 +8,10 @@ namespace {
 
 volatile std::sig_atomic_t requested = 0;
 
-void request(int signal) {
+void request(int /*signal*/) {
   requested = 1;
-  std::signal(signal, SIG_DFL);
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
 }
 
 }  // namespace
@@ -20,6 +21,8 @@ void watch_interrupts() {
   std::signal(SIGTERM, request);
 }
 
-bool interrupt_requested() { return requested != 0; }
+bool interrupt_requested() {
+  return requested != 0;
+}
 
 }  // namespace riven

@@ -24,8 +24,8 @@ class DisplacementField {
   [[nodiscard]] Point at(const Point& place, const ProbeInput& probe) const {
     const auto displacement = interpolation_.at(place);
     if (!displacement)
-      throw InputError(probe.at, fmt::format("probe {}: there is no material at ({:g}, {:g}, {:g}) m", probe.name,
-                                             place[0], place[1], place[2]));
+      throw InputError(probe.at, fmt::format("probe {}: there is no material at ({:g}, {:g}, {:g}) m",
+                                             probe.name, place[0], place[1], place[2]));
     return *displacement;
   }
 
@@ -39,12 +39,24 @@ double distance_between(const Point& a, const Point& b) {
   return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
 }
 
-Point moved(const Point& x, const Point& u) { return {x[0] + u[0], x[1] + u[1], x[2] + u[2]}; }
+Point moved(const Point& x, const Point& u) {
+  return {x[0] + u[0], x[1] + u[1], x[2] + u[2]};
+}
 
 }  // namespace
 
 Probes::Probes(const Simulation& simulation) : simulation_(simulation) {
-  for (const ProbeInput& probe : simulation.input.probes) add_columns(probe);
+  for (const ProbeInput& probe : simulation.input.probes) {
+    const std::size_t before = columns_.size();
+    add_columns(probe);
+    for (std::size_t n = before; n < columns_.size(); ++n)
+      for (std::size_t other = 0; other < before; ++other)
+        if (columns_[n].name == columns_[other].name)
+          throw InputError(probe.at,
+                           fmt::format("probe {}: gives the metric {}, which a probe above gives too; "
+                                       "expected another name",
+                                       probe.name, columns_[n].name));
+  }
   const std::vector<double> rest(simulation.model->dofs(), 0.0);
   const DisplacementField field(*simulation.model, rest);
   for (const ProbeInput& probe : simulation.input.probes)
@@ -60,7 +72,8 @@ void Probes::add_columns(const ProbeInput& probe) {
   if (probe.kind == "reaction") vector(probe.name, "N");
   if (probe.kind == "nominal-stress" && Simulation::face(probe.on.text)) vector(probe.name, "Pa");
   if (probe.kind == "nominal-stress" && !Simulation::face(probe.on.text))
-    for (const char* component : {"_xx", "_xy", "_yx", "_yy"}) columns_.push_back({probe.name + component, "Pa"});
+    for (const char* component : {"_xx", "_xy", "_yx", "_yy"})
+      columns_.push_back({probe.name + component, "Pa"});
   if (probe.kind == "displacement") vector("displacement_" + probe.name, "m");
   if (probe.kind == "stretch") columns_.push_back({probe.name, ""});
 }
@@ -76,7 +89,8 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
   for (const ProbeInput& probe : simulation_.input.probes) {
     const auto face = Simulation::face(probe.on.text);
     if (probe.kind == "reaction") add(constraints.reaction(simulation_.load_number(probe.on.text)), 1);
-    if (probe.kind == "nominal-stress" && face) add(constraints.reaction(*face), simulation_.face_area(*face));
+    if (probe.kind == "nominal-stress" && face)
+      add(constraints.reaction(*face), simulation_.face_area(*face));
     if (probe.kind == "nominal-stress" && !face) {
       Eigen::Matrix2d stress = Eigen::Matrix2d::Zero();
       double volume = 0;

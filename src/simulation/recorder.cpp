@@ -9,8 +9,8 @@
 
 namespace riven {
 
-Recorder::Recorder(const Simulation& simulation, const Probes& probes, const ResultFolder& folder, Progress& screen,
-                   Log& log)
+Recorder::Recorder(const Simulation& simulation, const Probes& probes, const ResultFolder& folder,
+                   Progress& screen, Log& log)
     : simulation_(simulation),
       probes_(probes),
       folder_(folder),
@@ -43,12 +43,14 @@ void Recorder::reached(const State& state, const Constraints& constraints, bool 
   metrics_ = probes_.metrics(values);
   history_.add(state.parameter, values);
   log_.detail(fmt::format("{} {:.6g}: {} force evaluations, strain energy {:.8g} J, energy balance {:.2e}",
-                          name(simulation_.parameter), state.parameter, state.evaluations, state.energy.strain,
-                          state.energy.error()));
+                          name(simulation_.parameter), state.parameter, state.evaluations,
+                          state.energy.strain, state.energy.error()));
   if (output) write_fields();
 }
 
-void Recorder::remarked(const std::string& message) { log_.warning(message); }
+void Recorder::remarked(const std::string& message) {
+  log_.warning(message);
+}
 
 void Recorder::write_fields() {
   PointCloud cloud;
@@ -59,7 +61,8 @@ void Recorder::write_fields() {
   };
   if (asked("displacement")) {
     PointField field{"displacement", 3, {}};
-    for (const Point& u : simulation_.model->displacements(last_.u)) field.values.insert(field.values.end(), u.begin(), u.end());
+    for (const Point& u : simulation_.model->displacements(last_.u))
+      field.values.insert(field.values.end(), u.begin(), u.end());
     cloud.fields.push_back(std::move(field));
   }
   for (ModelField& field : simulation_.model->fields(last_.u))

@@ -6,10 +6,12 @@
 #include <chrono>
 #include <fstream>
 #include <iostream>
+#include <new>
 #include <sstream>
 
 #include "input/case_writer.hpp"
 #include "simulation/interrupt.hpp"
+#include "simulation/preflight.hpp"
 #include "simulation/recorder.hpp"
 #include "solver/dynamic_relaxation.hpp"
 #include "solver/velocity_verlet.hpp"
@@ -45,8 +47,57 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::string last_state(const Recorder& recorder, const Simulation& simulation) {
-  return fmt::format("{} {:.6g}", name(simulation.parameter), recorder.last().parameter);
+/// Where a run that stopped has left what it reached.
+std::string last_state(const Recorder& recorder, const Simulation& simulation, const RunOptions& options) {
+  const std::string folder = options.folder.string();
+  if (recorder.last().u.empty()) return fmt::format("No state was reached; {} has the log", folder);
+  return fmt::format("The last good state, {} {:.6g}, is in {}", name(simulation.parameter),
+                     recorder.last().parameter, folder);
+}
+
+/// Marches to the end, or to where the run stops, and says why.
+RunStatus march_on(const Simulation& simulation, Recorder& recorder, Progress& screen, Log& log,
+                   const RunOptions& options) {
+  try {
+    static_cast<void>(solve(simulation, recorder));
+    screen.finish();
+    return RunStatus::finished;
+  } catch (const Interrupted&) {
+    log.warning(fmt::format("interrupted. {}", last_state(recorder, simulation, options)));
+    return RunStatus::interrupted;
+  } catch (const std::bad_alloc&) {
+    log.error(fmt::format("not enough memory for the run; try a larger spacing. {}",
+                          last_state(recorder, simulation, options)));
+  } catch (const std::exception& problem) {
+    log.error(fmt::format("{}: {}. {}", simulation.input.file.string(), problem.what(),
+                          last_state(recorder, simulation, options)));
+  }
+  return RunStatus::failed;
+}
+
+/// Where the resolved case stands, paths relative to the original one lead nowhere.
+Case with_absolute_paths(Case input) {
+  const auto folder = std::filesystem::absolute(input.file).parent_path();
+  const auto fix = [&](std::vector<ExpectInput>& expects) {
+    for (ExpectInput& expect : expects)
+      if (!expect.file.empty()) expect.file = (folder / expect.file).lexically_normal().string();
+  };
+  fix(input.expects);
+  if (input.short_run) fix(input.short_run->expect);
+  return input;
+}
+
+Summary summary_of(const Recorder& recorder, const Simulation& simulation, RunStatus status,
+                   const RunOptions& options, double wall_s) {
+  Summary summary = recorder.summary();
+  summary.status = status;
+  summary.case_name = options.case_name;
+  summary.timing.wall_s = wall_s;
+  if (simulation.parameter == Parameter::stretch) summary.timing.iterations = recorder.last().evaluations;
+  summary.timing.bond_evaluations_per_second =
+      static_cast<double>(recorder.last().evaluations) * static_cast<double>(summary.timing.bonds) / wall_s;
+  summary.memory_peak_bytes = peak_memory_bytes();
+  return summary;
 }
 
 }  // namespace
@@ -55,43 +106,38 @@ Summary run_case(const Case& input, const RunOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const Simulation simulation = build_simulation(input);
   const Probes probes(simulation);
+  check_before_run(simulation, probes);
   ResultFolder folder = ResultFolder::create(options.folder, options.force);
-  folder.publish(contents(input.file), resolved_case(input));
+  folder.publish(contents(input.file), resolved_case(with_absolute_paths(input)));
 
   Progress screen;
   Log log(std::cerr, [&] { screen.clear(); });
   log.open(folder.log());
   log.info(fmt::format("{}: {} points, {} bonds, {} threads -> {}", input.title, simulation.model->points(),
                        simulation.model->bonds(), omp_get_max_threads(), options.folder.string()));
+  for (const std::string& warning : warnings(simulation)) log.warning(warning);
   Recorder recorder(simulation, probes, folder, screen, log);
   watch_interrupts();
-  RunStatus status = RunStatus::finished;
-  try {
-    static_cast<void>(solve(simulation, recorder));
-    screen.finish();
-  } catch (const Interrupted&) {
-    status = RunStatus::interrupted;
-    log.warning(fmt::format("interrupted; the last good state, {}, is in {}", last_state(recorder, simulation),
-                            options.folder.string()));
-  } catch (const SolverFailure& failure) {
-    status = RunStatus::failed;
-    log.error(fmt::format("{}: {}. The last good state, {}, is in {}", input.file.string(), failure.what(),
-                          last_state(recorder, simulation), options.folder.string()));
-  }
-  recorder.keep_last();
-
-  Summary summary = recorder.summary();
+  RunStatus status = march_on(simulation, recorder, screen, log, options);
+  // What follows fails on a full disk, mostly; each part is worth trying.
+  const auto try_to = [&](const auto& write) {
+    try {
+      write();
+    } catch (const std::exception& problem) {
+      log.error(problem.what());
+      status = RunStatus::failed;
+    }
+  };
+  try_to([&] { recorder.keep_last(); });
+  Summary summary = summary_of(recorder, simulation, status, options, seconds_since(start));
+  try_to([&] { write_summary(folder.summary(), summary); });
   summary.status = status;
-  summary.case_name = options.case_name;
-  summary.timing.wall_s = seconds_since(start);
-  if (simulation.parameter == Parameter::stretch) summary.timing.iterations = recorder.last().evaluations;
-  summary.timing.bond_evaluations_per_second =
-      static_cast<double>(recorder.last().evaluations) * static_cast<double>(summary.timing.bonds) / summary.timing.wall_s;
-  summary.memory_peak_bytes = peak_memory_bytes();
-  write_summary(folder.summary(), summary);
   log.info(fmt::format("{} in {:.1f} s, {} force evaluations, {:.0f} million bonds/s, energy balance {:.1e}",
                        name(status), summary.timing.wall_s, recorder.last().evaluations,
                        1e-6 * summary.timing.bond_evaluations_per_second, summary.energy.balance_error));
+  if (status == RunStatus::finished)
+    log.info(fmt::format("results: {}/ (fields.pvd opens in ParaView; history.csv, summary.json)",
+                         options.folder.string()));
   return summary;
 }
 

@@ -17,8 +17,8 @@ struct PointSet {
   std::vector<std::size_t> points;  // storage indices
 };
 
-/// Everything a run needs, built from a case. Loads are numbered 0 to 5 for the faces, then one per set, then one for
-/// the inclusions that are held.
+/// Everything a run needs, built from a case. Loads are numbered 0 to 5 for the faces, then one per set, then
+/// one for the inclusions that are held.
 struct Simulation {
   Case input;
   Parameter parameter = Parameter::stretch;  // what the solver marches
@@ -36,8 +36,8 @@ struct Simulation {
   [[nodiscard]] double face_area(std::size_t face) const;
 };
 
-/// Throws InputError where the case can't be built: an empty set, overlapping defects, a load that the model can't
-/// carry.
+/// Throws InputError where the case can't be built: an empty set, overlapping defects, a load that the model
+/// can't carry.
 Simulation build_simulation(const Case& input);
 
 }  // namespace riven

@@ -12,21 +12,23 @@ namespace riven {
 
 /// One expectation held against a result.
 struct Verdict {
-  std::string what;                 // metric, or "displacement field"
+  std::string what;  // metric, or "displacement field"
   std::string unit;
-  double at = 0;                    // stretch, time (s) or cycle
-  bool decides = true;              // a reference; published values are only reported
-  std::optional<double> expected;   // none for a field
-  double ours = 0;                  // the metric; for a field the relative L2 deviation
-  double deviation = 0;             // relative to the expected value, if that is not 0
-  std::string limit;                // what was asked: "0.5 %", ">= 2"
+  double at = 0;  // stretch, time (s) or cycle
+  bool published = false;
+  bool decides = true;             // a reference; published values are only reported
+  std::optional<double> expected;  // none for a field
+  double ours = 0;                 // the metric; for a field the relative L2 deviation
+  double deviation = 0;            // relative to the expected value, if that is not 0
+  std::string limit;               // what was asked: "0.5 %", ">= 2"
   bool met = true;
   std::string source;
 };
 
-/// Holds the expectations of a case against its result folder. Throws InputError when an expectation names a metric or
-/// state that the result has not, or has another unit.
-std::vector<Verdict> judge(const Case& input, const std::vector<ExpectInput>& expects, const std::filesystem::path& folder);
+/// Holds the expectations of a case against its result folder. Throws InputError when an expectation names a
+/// metric or state that the result has not, or has another unit.
+std::vector<Verdict> judge(const Case& input, const std::vector<ExpectInput>& expects,
+                           const std::filesystem::path& folder);
 
 /// What a comparison with this case's results must know of its geometry.
 CompareSettings compare_settings(const Case& input, double exclude_within);

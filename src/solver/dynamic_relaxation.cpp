@@ -132,7 +132,7 @@ class Relaxation {
       }
       advance(damping(sums), iteration == 0);
     }
-    return fmt::format("not converged in {} iterations", settings_.max_iterations);
+    return fmt::format("not converged in the {} iterations of solver.max_iterations", settings_.max_iterations);
   }
 
   std::optional<Breakdown> evaluate() {

@@ -133,6 +133,19 @@ class Verlet {
                                     "have it follow", state_.parameter, what));
   }
 
+  /// Energy of motions too small to tell from rounding: a body at rest keeps no balance worth watching.
+  [[nodiscard]] double rounding_energy() const {
+    const std::vector<Point> positions = model_.positions();
+    double extent2 = 0;  // of the body's box, squared (m^2)
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto [least, most] = std::minmax_element(
+          positions.begin(), positions.end(), [a](const Point& p, const Point& q) { return p[a] < q[a]; });
+      extent2 += ((*most)[a] - (*least)[a]) * ((*most)[a] - (*least)[a]);
+    }
+    const double total = ordered_sum_of(n_, [&](std::size_t i) { return mass_[i]; });
+    return 1e-18 * total * extent2 / (step_ * step_);
+  }
+
   void balance() {
     EnergyBalance& energy = state_.energy;
     energy.kinetic = ordered_sum_of(n_, [&](std::size_t i) { return 0.5 * mass_[i] * state_.v[i] * state_.v[i]; });
@@ -148,7 +161,7 @@ class Verlet {
   void check() {
     if (const auto breakdown = model_.inspect(state_.u)) fail(*breakdown);
     const double error = state_.energy.error();
-    if (std::abs(error) <= kRunaway) return;
+    if (std::abs(error) <= kRunaway || state_.energy.largest <= rounding_energy()) return;
     throw SolverFailure(fmt::format(
         "at t = {:.6g} s, step {}, the energy runs away: {:.1f} % of it came from nowhere. The step of {:.4g} s is likely "
         "too long for this deformation; try a smaller solver.safety",

@@ -1,0 +1,274 @@
+#include "simulation/preflight.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/nearest_name.hpp"
+#include "body/stencil.hpp"
+#include "solver/velocity_verlet.hpp"
+#include "verification/reference_points.hpp"
+
+namespace riven {
+
+namespace {
+
+constexpr double kSameState = 1e-6;  // relative
+
+bool same_state(double a, double b) {
+  return std::abs(a - b) <= kSameState * std::max(std::abs(a), std::abs(b));
+}
+
+double last_state(const Case& input) {
+  return input.solver.method == "verlet" ? input.solver.until : input.solver.stretch.back();
+}
+
+std::string states_text(const Case& input) {
+  if (input.solver.method == "verlet") {
+    const double every = input.output.every.value_or(input.solver.until);
+    return fmt::format("0 and every {:g} s to {:g} s", every, input.solver.until);
+  }
+  std::string text;
+  for (const double stretch : input.solver.stretch)
+    text += fmt::format("{}{:g}", text.empty() ? "" : ", ", stretch);
+  return text;
+}
+
+/// Whether the run goes past a state, so that an expectation there was meant to be met.
+bool passes(const Case& input, double state) {
+  const double start = input.solver.method == "verlet" ? 0 : 1, end = last_state(input);
+  return (state - start) * (end - state) >= 0 && state != start;
+}
+
+std::filesystem::path reference_file(const Case& input, const ExpectInput& expect) {
+  return input.file.parent_path() / expect.file;
+}
+
+/// The states of a reference file that an expectation is about.
+std::vector<double> wanted_states(const Case& input, const ExpectInput& expect) {
+  std::vector<double> states;
+  try {
+    for (const ReferenceState& state : read_reference_points(reference_file(input, expect)).states)
+      if (!expect.state || (state.value && same_state(*state.value, *expect.state)))
+        states.push_back(state.value.value_or(last_state(input)));
+  } catch (const InputError& error) {
+    throw InputError(expect.at, fmt::format("expect: {}", error.what()));
+  }
+  return states;
+}
+
+[[noreturn]] void fail_state(const Case& input, const ExpectInput& expect, double state) {
+  throw InputError(expect.at, fmt::format("expect: the run has no output state at {:g}; its states are {}",
+                                          state, states_text(input)));
+}
+
+void check_field(const Case& input, const ExpectInput& expect) {
+  const auto& fields = input.output.fields;
+  if (std::find(fields.begin(), fields.end(), expect.field) == fields.end())
+    throw InputError(
+        expect.at,
+        fmt::format("expect: the field {} is not written; expected it in fields of [output]", expect.field));
+  const std::vector<double> wanted = wanted_states(input, expect);
+  const auto here =
+      std::find_if(wanted.begin(), wanted.end(), [&](double state) { return reaches(input, state); });
+  if (here == wanted.end())
+    throw InputError(expect.at,
+                     fmt::format("expect: {} has none of the run's output states {}", expect.file,
+                                 expect.state ? fmt::format("at {:g}", *expect.state) : states_text(input)));
+  for (const double state : wanted)
+    if (passes(input, state) && !reaches(input, state)) fail_state(input, expect, state);
+}
+
+void check_metric(const ExpectInput& expect, const std::vector<HistoryColumn>& columns) {
+  const auto column = std::find_if(columns.begin(), columns.end(),
+                                   [&](const HistoryColumn& c) { return c.name == expect.metric; });
+  if (column == columns.end()) {
+    std::vector<std::string> names;
+    for (const HistoryColumn& c : columns) names.push_back(c.name);
+    throw InputError(expect.at,
+                     fmt::format("expect: the case has no metric \"{}\"; its probes give {}{}", expect.metric,
+                                 names.empty() ? "none" : listed(names), did_you_mean(expect.metric, names)));
+  }
+  const std::string unit = column->unit.empty() ? "1" : column->unit;
+  for (const auto* quantity : {&expect.value, &expect.absolute_tolerance, &expect.min, &expect.max})
+    if (*quantity && (*quantity)->dimension != unit)
+      throw InputError(expect.at,
+                       fmt::format("expect: \"{}\" is in {}; found a value in {}", expect.metric,
+                                   unit == "1" ? "no unit" : unit,
+                                   (*quantity)->dimension == "1" ? "no unit" : (*quantity)->dimension));
+}
+
+void check_step(const Simulation& simulation) {
+  const SolverInput& solver = simulation.input.solver;
+  if (simulation.parameter != Parameter::time || !solver.step) return;
+  std::vector<double> start(simulation.model->dofs(), 0.0);
+  simulation.constraints->set_parameter(0);
+  simulation.constraints->apply(start);
+  const double limit = stable_step(*simulation.model, *simulation.constraints, start);
+  if (*solver.step > limit)
+    throw InputError(
+        solver.at, fmt::format("solver.step: {:.4g} s is above the stable step, {:.4g} s; expected less, or "
+                               "no step to have it chosen",
+                               *solver.step, limit));
+}
+
+/// Whether the loads displace the body before they have begun.
+bool jumps_at_start(const Simulation& simulation) {
+  std::vector<double> u(simulation.model->dofs(), 0.0);
+  simulation.constraints->set_parameter(simulation.parameter == Parameter::time ? 0 : 1);
+  simulation.constraints->apply(u);
+  const double noticeable = 1e-6 * simulation.model->body().lattice.spacing();
+  return std::any_of(u.begin(), u.end(), [&](double value) { return !(std::abs(value) <= noticeable); });
+}
+
+double points_along(const Shape& shape, double spacing, std::size_t axis) {
+  if (const auto* box = std::get_if<Box>(&shape)) return std::ceil(2 * box->half_size[axis] / spacing - 1e-6);
+  const double radius =
+      std::holds_alternative<Disc>(shape) ? std::get<Disc>(shape).radius : std::get<Ball>(shape).radius;
+  return std::ceil(2 * radius / spacing - 1e-6);
+}
+
+double load_steps(const SolverInput& solver) {
+  double steps = 1, before = 1;  // one small step comes first
+  for (const double stretch : solver.stretch) {
+    steps += std::ceil(std::abs(stretch - before) / solver.increment - 1e-9);
+    before = stretch;
+  }
+  return steps;
+}
+
+}  // namespace
+
+bool reaches(const Case& input, double state) {
+  const SolverInput& solver = input.solver;
+  if (solver.method != "verlet")
+    return std::any_of(solver.stretch.begin(), solver.stretch.end(),
+                       [&](double s) { return same_state(s, state); });
+  const double every = input.output.every.value_or(solver.until), count = std::round(state / every);
+  const bool on_schedule =
+      count >= 0 && state <= solver.until * (1 + kSameState) && same_state(state, count * every);
+  return on_schedule || same_state(state, solver.until);
+}
+
+std::size_t drop_unreached_expectations(Case& input) {
+  return std::erase_if(input.expects, [&](const ExpectInput& expect) {
+    if (expect.state) return !reaches(input, *expect.state);
+    if (expect.field.empty()) return false;
+    const std::vector<double> wanted = wanted_states(input, expect);
+    return std::none_of(wanted.begin(), wanted.end(), [&](double state) { return reaches(input, state); });
+  });
+}
+
+void check_before_run(const Simulation& simulation, const Probes& probes) {
+  check_step(simulation);
+  const Case& input = simulation.input;
+  for (const ExpectInput& expect : input.expects) {
+    if (expect.state && !reaches(input, *expect.state)) fail_state(input, expect, *expect.state);
+    if (expect.field.empty()) {
+      check_metric(expect, probes.columns());
+    } else {
+      check_field(input, expect);
+    }
+  }
+}
+
+std::vector<std::string> warnings(const Simulation& simulation) {
+  std::vector<std::string> list;
+  const LatticeBody& body = simulation.model->body();
+  const double ratio = body.horizon / body.lattice.spacing();
+  if (ratio < 2.9)
+    list.push_back(fmt::format(
+        "the horizon is {:.3g} spacings: families of so few directions are stiff along the lattice; 3 "
+        "is usual",
+        ratio));
+  if (simulation.input.model.stabilisation < 1)
+    list.push_back(
+        "with a stabilisation below 1 rows of points fold over one another beside defects and under "
+        "compression");
+  if (simulation.input.loads.empty()) list.push_back("there is no load: nothing will move");
+  if (simulation.input.probes.empty())
+    list.push_back("there is no probe: history.csv and the metrics will be empty");
+  if (jumps_at_start(simulation))
+    list.push_back(fmt::format("the loads are not zero at {}: the body starts with a jump",
+                               simulation.parameter == Parameter::time ? "time 0" : "stretch 1"));
+  const auto* box = std::get_if<Box>(&body.shape);
+  for (const Shape& inclusion : body.defects.inclusions) {
+    bool near = false;
+    for (std::size_t axis = 0; box != nullptr && axis < 2; ++axis)
+      for (const double side : {-1.0, 1.0}) {
+        Point edge = std::visit([](const auto& shape) { return shape.center; }, inclusion);
+        edge[axis] = box->center[axis] + side * box->half_size[axis];
+        near = near || signed_distance(inclusion, edge) < body.horizon;
+      }
+    if (near)
+      list.push_back(
+          "an inclusion is nearer than a horizon to an edge: the strip between is too thin for this lattice");
+  }
+  return list;
+}
+
+double memory_estimate(const GeometryInput& geometry) {
+  // Planes of the model, vectors of the solver and what outputs copy, in doubles per lattice point and per
+  // direction.
+  constexpr double kPlanes = 30, kVectors = 12, kProgram = 30e6;
+  const LatticeInput& lattice = geometry.lattice;
+  const double reach = geometry.horizon / lattice.spacing;
+  double points = 1, bonds = 1;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(lattice.dimension); ++axis) {
+    points *= points_along(lattice.shape, lattice.spacing, axis) + 2 * reach;
+    bonds *= 2 * reach;
+  }
+  return kProgram + points * (8 * (kPlanes + kVectors * lattice.dimension) + bonds / 8);
+}
+
+void check_memory(const GeometryInput& geometry) {
+  const double need = memory_estimate(geometry);
+  const double have =
+      static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  if (need > have)
+    throw InputError(
+        geometry.lattice.at,
+        fmt::format(
+            "geometry: so many points need about {:.3g} GB of memory, this machine has {:.3g} GB; expected "
+            "a larger spacing",
+            1e-9 * need, 1e-9 * have));
+}
+
+TimeEstimate time_estimate(const Simulation& simulation) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds kMoment{200};
+  Membrane& model = *simulation.model;
+  const std::vector<double> rest(model.dofs(), 0.0);
+  std::vector<double> force(model.dofs());
+  const auto evaluate = [&] { static_cast<void>(model.internal_force(rest, force)); };
+  evaluate();  // the first one touches new memory
+  std::vector<double> seconds;
+  const auto begin = Clock::now();
+  do {
+    const auto start = Clock::now();
+    evaluate();
+    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+  } while (Clock::now() - begin < kMoment);
+  TimeEstimate estimate;
+  // The median: threads that wait for a busy core now and then say nothing about the run.
+  const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
+  std::nth_element(seconds.begin(), middle, seconds.end());
+  estimate.evaluation_s = *middle;
+
+  const SolverInput& solver = simulation.input.solver;
+  if (simulation.parameter == Parameter::time) {
+    const double step = solver.safety * stable_step(model, *simulation.constraints, rest);
+    estimate.evaluations = std::ceil(solver.until / solver.step.value_or(step));
+  } else {
+    constexpr double kPerPointAlongSide = 3.5;  // waves must cross the body a few times in each load step
+    const auto& cells = model.body().lattice.cells();
+    estimate.evaluations =
+        kPerPointAlongSide * *std::max_element(cells.begin(), cells.end()) * load_steps(solver);
+  }
+  return estimate;
+}
+
+}  // namespace riven

@@ -1,0 +1,170 @@
+"""What the tests of the built program share: running it in an empty folder, small cases, reading field files."""
+
+import base64
+import csv
+import json
+import os
+import pathlib
+import struct
+import subprocess
+import tempfile
+import unittest
+import xml.etree.ElementTree as ElementTree
+import zlib
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = os.environ.get("RIVEN_PROGRAM", str(ROOT / "build/release/riven"))
+
+# A sheet whose response is known: C10 = 1 MPa, so the force on an edge is 2 MPa (s - s^-5) 0.2 m 10 mm.
+PLAIN = """title = "Sheet"
+
+[geometry]
+box = { size = ["0.2 m", "0.2 m"], thickness = "10 mm", points = [20, 20] }
+horizon = "3 dx"
+
+[material.rubber]
+law = "neo-hookean"
+youngs_modulus = "6 MPa"
+density = "1100 kg/m^3"
+
+[[load]]
+on = ["left", "right", "bottom", "top"]
+displacement = ["(stretch - 1)*x", "(stretch - 1)*y"]
+
+[solver]
+method = "dynamic-relaxation"
+stretch = [1.2, 1.4]
+
+[[probe]]
+name = "force"
+kind = "reaction"
+on = "right"
+"""
+
+HOLE = PLAIN + """
+[[hole]]
+disc = { radius = "30 mm" }
+
+[[probe]]
+name = "hole_x"
+kind = "stretch"
+from = ["-30 mm", 0]
+to = ["30 mm", 0]
+"""
+
+MOVING = """title = "Sheet that is pulled"
+
+[geometry]
+box = { size = ["0.2 m", "0.2 m"], thickness = "10 mm", points = [20, 20] }
+horizon = "3 dx"
+
+[material.rubber]
+law = "neo-hookean"
+youngs_modulus = "6 MPa"
+density = "1100 kg/m^3"
+
+[[load]]
+on = ["left", "right"]
+displacement = ["1e4 /s^2 * x * t*t", "free"]
+
+[solver]
+method = "verlet"
+until = "4 ms"
+
+[output]
+every = "2 ms"
+history_every = "1 ms"
+
+[[probe]]
+name = "force"
+kind = "reaction"
+on = "right"
+"""
+
+
+def plain_force(stretch):
+    return 2e6 * (stretch - stretch**-5) * 0.2 * 0.01
+
+
+def replaced(text, old, new):
+    """`text` with the one place `old` changed: a case that lost it would test nothing."""
+    if text.count(old) != 1:
+        raise ValueError(f"{old!r} stands {text.count(old)} times in the case")
+    return text.replace(old, new)
+
+
+class ProgramTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="riven cli ")  # a blank, as users have them
+        self.addCleanup(folder.cleanup)
+        self.top = pathlib.Path(folder.name).resolve()
+
+    def write(self, name, text):
+        path = self.top / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    def command(self, *words, expect=0, cwd=None, environment=None, **options):
+        """Runs the program and checks its exit code."""
+        done = subprocess.run([PROGRAM, *map(str, words)], cwd=cwd or self.top, capture_output=True, text=True,
+                              env={**os.environ, **(environment or {})}, timeout=100, check=False, **options)
+        self.assertEqual(done.returncode, expect, f"riven {' '.join(map(str, words))}\n{done.stdout}\n{done.stderr}")
+        return done
+
+    def refused(self, *words, expect=2, **options):
+        """Runs the program, which must refuse with one line and leave nothing behind. Returns the line."""
+        before = self.everything()
+        done = self.command(*words, expect=expect, **options)
+        self.assertEqual(done.stdout, "")
+        self.assertTrue(done.stderr.startswith("error: "), done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertEqual(self.everything(), before, "something was left on disk")
+        return done.stderr
+
+    def everything(self):
+        return sorted(str(p.relative_to(self.top)) for p in self.top.rglob("*"))
+
+    def summary(self, folder):
+        return json.loads((self.top / folder / "summary.json").read_text(encoding="utf-8"))
+
+
+def history(folder):
+    """The columns and the rows (as numbers) of a result's history.csv."""
+    with open(folder / "history.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    return rows[0], [[float(cell) for cell in row] for row in rows[1:]]
+
+
+def series(folder):
+    """The (value, file) of each output state of a result."""
+    root = ElementTree.parse(folder / "fields.pvd").getroot()
+    return [(float(entry.get("timestep")), folder / entry.get("file")) for entry in root.iter("DataSet")]
+
+
+def decoded(node):
+    """The numbers of a compressed binary array of a VTK file."""
+    text = "".join(node.text.split())
+    blocks = struct.unpack("<Q", base64.b64decode(text[:12])[:8])[0]
+    header_bytes = 8 * (3 + blocks)
+    header_text = 4 * ((header_bytes + 2) // 3)
+    sizes = struct.unpack(f"<{3 + blocks}Q", base64.b64decode(text[:header_text]))[3:]
+    data, at, raw = base64.b64decode(text[header_text:]), 0, b""
+    for size in sizes:
+        raw += zlib.decompress(data[at:at + size])
+        at += size
+    return struct.unpack(f"<{len(raw) // 8}d", raw)
+
+
+def fields(file):
+    """Points and point fields (name -> list of tuples) of a VTU file."""
+    piece = ElementTree.parse(file).getroot().find("UnstructuredGrid/Piece")
+    count = int(piece.get("NumberOfPoints"))
+
+    def tuples(node):
+        numbers, width = decoded(node), int(node.get("NumberOfComponents", "1"))
+        if len(numbers) != width * count:
+            raise ValueError(f"{len(numbers)} numbers for {count} points of {width} components")
+        return [numbers[i:i + width] for i in range(0, len(numbers), width)]
+
+    return tuples(piece.find("Points/DataArray")), {a.get("Name"): tuples(a) for a in piece.find("PointData")}

@@ -1,0 +1,151 @@
+"""Wrong input ends with 2 and one line that says where and what was expected; nothing is left on disk."""
+
+import re
+import unittest
+
+from program import HOLE, MOVING, PLAIN, ProgramTest, replaced
+
+EXPECT = """
+[[expect]]
+metric = "force_x"
+value = "1 kN"
+tolerance = "1 %"
+at = 1.4
+kind = "reference"
+"""
+FIELD = """
+[[expect]]
+field = "displacement"
+file = "points.csv"
+tolerance = "1 %"
+kind = "reference"
+"""
+SET = """
+[set.{name}]
+where = "{where}"
+"""
+
+# case, what is replaced, by what, the key's line as a fragment (the message must name its line), part of the message
+MISTAKES = [
+    ("titel", PLAIN, "title =", "titel =", "titel =", 'did you mean "title"?'),
+    ("unknown key", PLAIN, 'horizon = "3 dx"', 'horizn = "3 dx"', "horizn", 'did you mean "horizon"?'),
+    ("unknown table", PLAIN, "[solver]", "[slover]", "[slover]", 'did you mean "solver"?'),
+    ("key of another table", PLAIN, 'horizon = "3 dx"', 'until = "1 s"', "until", '"until" belongs in [solver]'),
+    ("key of another method", PLAIN, "stretch = [1.2, 1.4]", 'stretch = [2]\nuntil = "1 s"', "until", "verlet"),
+    ("not TOML", PLAIN, "[solver]", "[solver", "[solver", "expected"),
+    ("a key twice", PLAIN, 'horizon = "3 dx"', 'horizon = "3 dx"\nhorizon = "2 dx"', 'horizon = "2 dx"', "horizon"),
+    ("no unit", PLAIN, 'thickness = "10 mm"', "thickness = 10", "box =", 'write "10 mm"'),
+    ("another dimension", PLAIN, '"6 MPa"', '"6 mm"', "youngs_modulus", "expected a pressure"),
+    ("unknown unit", PLAIN, '"6 MPa"', '"6 Mpa"', "youngs_modulus", 'unknown unit "Mpa"'),
+    ("negative", PLAIN, '"6 MPa"', '"-6 MPa"', "youngs_modulus", "above 0"),
+    ("no number", PLAIN, '"6 MPa"', "nan", "youngs_modulus", "finite"),
+    ("unknown law", PLAIN, '"neo-hookean"', '"neohookean"', "law =", 'did you mean "neo-hookean"?'),
+    ("unknown method", PLAIN, '"dynamic-relaxation"', '"newton"', "method =", "dynamic-relaxation, verlet"),
+    ("stretch to and fro", PLAIN, "[1.2, 1.4]", "[1.4, 1.2]", "stretch = [", "1.2 comes after 1.4"),
+    ("a bracket", PLAIN, '"(stretch - 1)*x"', '"(stretch - 1*x"', "displacement", "parenthesis"),
+    ("unknown variable", PLAIN, '"(stretch - 1)*x"', '"(strech - 1)*x"', "displacement", 'did you mean "stretch"?'),
+    ("time in statics", PLAIN, '"(stretch - 1)*x"', '"1 m/s * t"', "displacement", '"t" is not known here'),
+    ("one component", PLAIN, ', "(stretch - 1)*y"', "", "displacement", "expected 2"),
+    ("unknown edge", PLAIN, '["left",', '["lefft",', "on = [", 'did you mean "left"?'),
+    ("unknown probe", PLAIN, '"reaction"', '"force"', 'kind = "force"', "expected one of reaction"),
+    ("horizon below the spacing", PLAIN, '"3 dx"', '"0.5 dx"', "horizon", "below the spacing"),
+    ("no density in motion", MOVING, 'density = "1100 kg/m^3"', "", "[material.rubber]", "density"),
+    ("empty set", PLAIN + SET.format(name="far", where="x > 1 m"), "x > 1 m", "x > 2 m", "[set.far]", "the set is empty"),
+    ("overlap", HOLE + '\n[[hole]]\ndisc = { radius = "5 mm", center = ["9 mm", 0] }\n', "9 mm", "10 mm",
+     "[[hole]]", "overlaps the one at"),
+    ("edge between points", PLAIN, "points = [20, 20]", 'spacing = "11 mm"', "[geometry]", "does not divide the size"),
+    ("edge along itself", PLAIN, 'on = ["left", "right", "bottom", "top"]\ndisplacement = ["(stretch - 1)*x", '
+     '"(stretch - 1)*y"]', 'on = "left"\ndisplacement = ["free", "(stretch - 1)*y"]', 'on = "left"', "along itself only"),
+    ("displaced twice", PLAIN + '\n[[load]]\non = "left"\ndisplacement = [0, "free"]\n', "[0,", '["1 mm",', 'on = "left"',
+     "displaced twice"),
+    ("long step", MOVING, 'until = "4 ms"', 'until = "4 ms"\nstep = "1 ms"', "[solver]", "above the stable step"),
+    ("probe outside", HOLE, 'from = ["-30 mm", 0]', 'from = ["-30 m", 0]', "[[probe]]", "there is no material at"),
+    ("probe in the hole", HOLE, 'from = ["-30 mm", 0]', "from = [0, 0]", "[[probe]]", "there is no material at"),
+    ("one metric twice", HOLE, '"hole_x"', '"force_x"', "[[probe]]", "gives the metric force_x, which a probe above"),
+    ("body of three dimensions", PLAIN, 'size = ["0.2 m", "0.2 m"], thickness = "10 mm", points = [20, 20]',
+     'size = ["0.2 m", "0.2 m", "0.2 m"], points = [6, 6, 6]', "displacement", "expected 3"),
+    ("too many points", PLAIN, "points = [20, 20]", "points = [2000000, 2000000]", "[geometry]", "expected a larger spacing"),
+    ("unknown metric", PLAIN + EXPECT, '"force_x"', '"forcex"', "[[expect]]", 'did you mean "force_x"?'),
+    ("other unit", PLAIN + EXPECT, '"1 kN"', '"1 kPa"', "[[expect]]", '"force_x" is in N'),
+    ("no such state", PLAIN + EXPECT, "at = 1.4", "at = 1.45", "[[expect]]", "its states are 1.2, 1.4"),
+    ("no such time", MOVING + EXPECT, "at = 1.4", 'at = "1 ms"', "[[expect]]", "no output state at 0.001"),
+    ("no such file", PLAIN + FIELD, "points.csv", "pionts.csv", "[[expect]]", "pionts.csv: there is no such file"),
+    ("field not written", PLAIN + FIELD + '\n[output]\nfields = ["damage"]\n', "points.csv", "points.csv ", "[[expect]]",
+     "displacement is not written"),
+    ("state between", PLAIN + FIELD, "points.csv", "between.csv", "[[expect]]", "no output state at 1.3"),
+    ("states beyond", PLAIN + FIELD, "points.csv", "beyond.csv", "[[expect]]", "none of the run's output states"),
+    ("broken reference", PLAIN + FIELD, "points.csv", "broken.csv", "[[expect]]", "broken.csv:2"),
+]
+
+
+class WrongInput(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        header = "lambda,X_m,Y_m,ux_m,uy_m\n"
+        self.write("points.csv", header + "1.4,0.01,0,0.004,0\n")
+        self.write("between.csv", header + "1.2,0.01,0,0.002,0\n1.3,0.01,0,0.003,0\n")
+        self.write("beyond.csv", header + "3,0.01,0,0.02,0\n")
+        self.write("broken.csv", header + "1.4,0.01,zero,0.002,0\n")
+
+    def test_each_mistake_is_named_with_its_place(self):
+        for name, text, old, new, marked, message in MISTAKES:
+            with self.subTest(name):
+                wrong = replaced(text, old, new)
+                case = self.write("case.toml", wrong)
+                said = self.refused("run", case)
+                place = re.match(r"error: (.*?):(\d+):(\d+): ", said)
+                self.assertIsNotNone(place, said)
+                self.assertEqual(place[1], str(case))
+                line = wrong.splitlines()[int(place[2]) - 1]
+                if new not in line and marked not in line:  # a parser may notice on the line below
+                    line = wrong.splitlines()[int(place[2]) - 2]
+                self.assertTrue(marked in line or new in line, f"{said}points at: {line}")
+                self.assertLessEqual(int(place[3]), len(line) + 1)
+                self.assertIn(message, said)
+                self.assertEqual(self.refused("check", case), said, "check and run must agree")
+
+    def test_the_cases_are_right_without_the_mistake(self):
+        for name, text in {"plain": PLAIN + EXPECT, "hole": HOLE + FIELD, "moving": MOVING}.items():
+            self.command("check", self.write(f"{name}.toml", text))
+
+    def test_three_dimensions_have_no_membrane(self):
+        text = replaced(PLAIN, 'size = ["0.2 m", "0.2 m"], thickness = "10 mm", points = [20, 20]',
+                        'size = ["0.2 m", "0.2 m", "0.2 m"], points = [6, 6, 6]')
+        text = replaced(text, '"(stretch - 1)*y"]', '"(stretch - 1)*y", "free"]')
+        said = self.refused("run", self.write("case.toml", text))
+        self.assertRegex(said, r"case\.toml:\d+")
+        self.assertIn("two-dimensional", said)
+
+    def test_overrides_are_named(self):
+        case = self.write("case.toml", PLAIN)
+        for override, message in {
+                "solver.stretc=[2]": 'did you mean "stretch"?',
+                "geometry.box.points=[20]": "expected 2",
+                "load.3.on=left": "load",
+                "solver": "expected path.to.key=value",
+                "material.rubber.youngs_modulus=6 mm": "expected a pressure"}.items():
+            with self.subTest(override):
+                said = self.refused("run", case, "--set", override)
+                self.assertIn(message, said)
+                self.assertIn("--set", said)
+
+    def test_the_short_variant_is_checked(self):
+        text = PLAIN + '\n[short]\nset = ["solver.stretch=[1.1]"]\n'
+        self.command("check", self.write("right.toml", text))
+        self.write("wrong.toml", replaced(text, "stretch=[1.1]", "strech=[1.1]"))
+        self.assertIn('did you mean "stretch"?', self.refused("check", "wrong.toml"))
+        self.write("late.toml", text + '[[short.expect]]\nmetric = "force_x"\nmin = "1 N"\nat = 1.4\nkind = "reference"\n')
+        self.assertIn("its states are 1.1", self.refused("check", "late.toml"))
+
+    def test_files_that_are_none(self):
+        (self.top / "folder").mkdir()
+        self.write("empty.toml", "")
+        (self.top / "bytes.toml").write_bytes(b"title = \"\xff\xfe\"\n")
+        self.assertIn("is a directory", self.refused("run", "folder"))
+        self.assertIn("title: missing", self.refused("run", "empty.toml"))
+        self.assertIn("bytes.toml:1", self.refused("run", "bytes.toml"))
+        self.assertIn("no such file", self.refused("run", "nothing.toml"))
+
+
+if __name__ == "__main__":
+    unittest.main()
