@@ -1,5 +1,6 @@
-// Rates of the membrane model on a square sheet with a hole: directed bonds per second of one force evaluation, and bytes that the
-// model holds per point and per directed bond. Run: riven_bench [--benchmark_filter=...]
+// Rates of the membrane model on a square sheet with a hole: directed bonds per second of one force
+// evaluation, and bytes that the model holds per point and per directed bond. Run: riven_bench
+// [--benchmark_filter=...]
 
 #include <benchmark/benchmark.h>
 #include <omp.h>
@@ -53,6 +54,10 @@ void force(benchmark::State& state) {
   state.counters["bytes/bond"] = static_cast<double>(sheet.bytes()) / bonds;
 }
 
-BENCHMARK(force)->ArgNames({"side", "threads"})->ArgsProduct({{100, 400, 1000}, {1, 2}})->UseRealTime()->Unit(benchmark::kMicrosecond);
+BENCHMARK(force)
+    ->ArgNames({"side", "threads"})
+    ->ArgsProduct({{100, 400, 1000}, {1, 2}})
+    ->UseRealTime()
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace

@@ -19,11 +19,11 @@ namespace riven::app {
 namespace {
 
 void print_sets(const Simulation& simulation) {
-  const Lattice& lattice = simulation.model->body().lattice;
+  const Lattice& lattice = simulation.body->lattice;
   for (const PointSet& set : simulation.sets) {
     Point lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};
     for (const std::size_t i : set.points) {
-      const Point x = lattice.position(i);
+      const Point x = lattice.position(simulation.body->points[i]);
       for (std::size_t a = 0; a < 3; ++a) {
         lower[a] = std::min(lower[a], x[a]);
         upper[a] = std::max(upper[a], x[a]);
@@ -35,8 +35,8 @@ void print_sets(const Simulation& simulation) {
 }
 
 void print_model(const Simulation& simulation) {
-  const Membrane& model = *simulation.model;
-  const LatticeBody& body = model.body();
+  const Model& model = *simulation.model;
+  const LatticeBody& body = *simulation.body;
   double volume = 0;
   for (const std::size_t i : body.points) volume += body.volume[i];
   fmt::print(
@@ -45,11 +45,7 @@ void print_model(const Simulation& simulation) {
       body.ghosts.size());
   fmt::print("# bonds: {} directed, {} neighbours within the horizon of {:g} spacings\n", model.bonds(),
              body.stencil.size(), body.horizon / body.lattice.spacing());
-  fmt::print("# weights: {} points by least squares, {} by the deformation gradient\n",
-             model.points_by_least_squares(), model.points_by_gradient());
-  const double mu = shear_modulus(model.material().law);
-  fmt::print("# material {}: shear modulus {:.6g} Pa, Young's modulus {:.6g} Pa (incompressible)\n",
-             model.material().name, mu, 3 * mu);
+  for (const std::string& line : model.describe()) fmt::print("# {}\n", line);
   print_sets(simulation);
 }
 

@@ -19,9 +19,13 @@ inline Lanes load(const double* from) {
   return lanes;
 }
 
-inline void store(double* to, Lanes lanes) { std::memcpy(to, &lanes, sizeof lanes); }
+inline void store(double* to, Lanes lanes) {
+  std::memcpy(to, &lanes, sizeof lanes);
+}
 
-inline Lanes broadcast(double value) { return Lanes{} + value; }
+inline Lanes broadcast(double value) {
+  return Lanes{} + value;
+}
 
 /// Lane l is true where bit l is set.
 inline LaneMask expand(std::uint8_t bits) {

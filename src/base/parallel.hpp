@@ -16,16 +16,22 @@ void parallel_for(std::ptrdiff_t n, const Body& body) {
 /// Length of the pieces in which long sums are made; fixed, so that the order of additions is.
 inline constexpr std::size_t kSumChunk = 2048;
 
+/// Runs `body(begin, end)` for pieces of [0, n), as `parallel_for` does.
+template <class Body>
+void parallel_pieces(std::size_t n, const Body& body) {
+  parallel_for(static_cast<std::ptrdiff_t>((n + kSumChunk - 1) / kSumChunk), [&](std::ptrdiff_t p) {
+    const std::size_t begin = static_cast<std::size_t>(p) * kSumChunk;
+    body(begin, begin + kSumChunk < n ? begin + kSumChunk : n);
+  });
+}
+
 /// Sum over i in [0, n) of the values that `partial(begin, end)` returns for pieces of fixed length, added in
 /// order: the same bits on any number of threads. `T` needs += and a default value that is zero.
 template <class T, class Partial>
 T ordered_sum(std::size_t n, const Partial& partial) {
-  const auto pieces = static_cast<std::ptrdiff_t>((n + kSumChunk - 1) / kSumChunk);
-  std::vector<T> sums(static_cast<std::size_t>(pieces));
-  parallel_for(pieces, [&](std::ptrdiff_t p) {
-    const std::size_t begin = static_cast<std::size_t>(p) * kSumChunk;
-    sums[static_cast<std::size_t>(p)] = partial(begin, begin + kSumChunk < n ? begin + kSumChunk : n);
-  });
+  std::vector<T> sums((n + kSumChunk - 1) / kSumChunk);
+  parallel_pieces(n,
+                  [&](std::size_t begin, std::size_t end) { sums[begin / kSumChunk] = partial(begin, end); });
   T total{};
   for (const T& sum : sums) total += sum;
   return total;

@@ -20,7 +20,9 @@ class BondPlanes {
     return ((planes_[offset][point / kLanes] >> (point % kLanes)) & 1U) != 0;
   }
   /// Bits of the points [8 block, 8 block + 8).
-  [[nodiscard]] std::uint8_t mask(std::size_t offset, std::size_t block) const { return planes_[offset][block]; }
+  [[nodiscard]] std::uint8_t mask(std::size_t offset, std::size_t block) const {
+    return planes_[offset][block];
+  }
 
   /// Joins a point and its neighbour, seen from both ends.
   void join(const Stencil& stencil, std::size_t offset, std::size_t point) {

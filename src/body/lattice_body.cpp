@@ -32,7 +32,8 @@ Bounds bounds_of(const Shape& shape, int dimension) {
   };
   if (const auto* box = std::get_if<Box>(&shape)) grow(box->center, box->half_size);
   if (const auto* disc = std::get_if<Disc>(&shape)) grow(disc->center, {disc->radius, disc->radius, 0});
-  if (const auto* ball = std::get_if<Ball>(&shape)) grow(ball->center, {ball->radius, ball->radius, ball->radius});
+  if (const auto* ball = std::get_if<Ball>(&shape))
+    grow(ball->center, {ball->radius, ball->radius, ball->radius});
   return b;
 }
 
@@ -48,7 +49,8 @@ Lattice make_lattice(const LatticeBodyInput& in) {
     for (std::size_t side = 0; side < 2; ++side)
       if (in.mirrored.test(2 * a + side) && std::abs(cells[a] * in.spacing - size) > 1e-6 * in.spacing)
         throw InputError(fmt::format(
-            "a load on the edge \"{}\" needs points that end there: the spacing {:g} m does not divide the size "
+            "a load on the edge \"{}\" needs points that end there: the spacing {:g} m does not divide the "
+            "size "
             "{:g} m; the nearest one that does is {:g} m",
             kFaceNames[2 * a + side], in.spacing, size, size / std::max(1.0, std::round(size / in.spacing))));
   }
@@ -74,7 +76,8 @@ class CellFiller {
         body_.kind[i] = PointKind::body;
         body_.volume[i] = std::min(fraction, 1.0) * cell_volume;
       }
-      if (body_.kind[i] != PointKind::body && fraction > 0) removed.emplace_back(cell, fraction * cell_volume);
+      if (body_.kind[i] != PointKind::body && fraction > 0)
+        removed.emplace_back(cell, fraction * cell_volume);
     });
     for (const auto& [cell, volume] : removed) share_with_nearest(cell, volume);
   }
@@ -111,7 +114,8 @@ class CellFiller {
           best = distance;
           nearest.push_back(index);
         }
-    for (const std::size_t index : nearest) body_.volume[index] += volume / static_cast<double>(nearest.size());
+    for (const std::size_t index : nearest)
+      body_.volume[index] += volume / static_cast<double>(nearest.size());
   }
 
   const LatticeBodyInput& in_;
@@ -119,7 +123,8 @@ class CellFiller {
 };
 
 /// Reflections that bring a ghost cell into the body, or nothing if a face in between has no ghosts.
-std::optional<std::pair<Cell, Faces>> reflect_inside(const Lattice& lattice, const Faces& mirrored, Cell cell) {
+std::optional<std::pair<Cell, Faces>> reflect_inside(const Lattice& lattice, const Faces& mirrored,
+                                                     Cell cell) {
   Faces faces;
   for (std::size_t a = 0; a < 3; ++a) {
     const bool below = cell[a] < 0;
@@ -150,7 +155,8 @@ Point mirror_image(const Lattice& lattice, const Cell& ghost, const Point& x) {
   for (std::size_t a = 0; a < 3; ++a) {
     const double lower = lattice.position(Cell{0, 0, 0})[a] - 0.5 * lattice.spacing();
     if (ghost[a] < 0) image[a] = 2 * lower - x[a];
-    if (ghost[a] >= lattice.cells()[a]) image[a] = 2 * (lower + lattice.cells()[a] * lattice.spacing()) - x[a];
+    if (ghost[a] >= lattice.cells()[a])
+      image[a] = 2 * (lower + lattice.cells()[a] * lattice.spacing()) - x[a];
   }
   return image;
 }
@@ -177,7 +183,8 @@ class BondMaker {
   [[nodiscard]] bool near_face(const Cell& cell) const {
     for (int a = 0; a < body_.lattice.dimension(); ++a) {
       const auto axis = static_cast<std::size_t>(a);
-      if (cell[axis] < body_.lattice.reach(a) || cell[axis] >= body_.lattice.cells()[axis] - body_.lattice.reach(a))
+      if (cell[axis] < body_.lattice.reach(a) ||
+          cell[axis] >= body_.lattice.cells()[axis] - body_.lattice.reach(a))
         return true;
     }
     return false;

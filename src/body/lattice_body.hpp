@@ -33,10 +33,10 @@ struct GhostPoint {
 
 /// A bond that ends on the surface of a rigid inclusion instead of at the lattice point behind it.
 struct InterfaceBond {
-  std::size_t point = 0;      // body end
-  std::size_t offset = 0;     // number of the stencil's bond that was shortened
+  std::size_t point = 0;   // body end
+  std::size_t offset = 0;  // number of the stencil's bond that was shortened
   std::size_t inclusion = 0;
-  Point end{};                // on the surface, undeformed (m)
+  Point end{};  // on the surface, undeformed (m)
 };
 
 /// What a lattice body is made from; lengths in metres.
@@ -47,7 +47,7 @@ struct LatticeBodyInput {
   double spacing = 0;
   double horizon = 0;
   Defects defects;
-  Faces mirrored;        // faces that get layers of ghost points
+  Faces mirrored;  // faces that get layers of ghost points
 };
 
 /// Points of a uniform lattice with bonds between them. Fields are stored on the padded lattice
@@ -60,12 +60,12 @@ struct LatticeBody {
   Shape shape;
   Defects defects;
   std::vector<PointKind> kind;
-  std::vector<double> volume;              // m^3; 0 unless body
-  BondPlanes bonds;                        // body-body and body-ghost
-  std::vector<std::uint16_t> whole_family; // bonds of a body point if no crack had cut any
-  std::vector<std::size_t> points;         // body points in storage order
+  std::vector<double> volume;               // m^3; 0 unless body
+  BondPlanes bonds;                         // body-body and body-ghost
+  std::vector<std::uint16_t> whole_family;  // bonds of a body point if no crack had cut any
+  std::vector<std::size_t> points;          // body points in storage order
   std::vector<GhostPoint> ghosts;
-  std::vector<InterfaceBond> interface;    // sorted by point, then offset
+  std::vector<InterfaceBond> interface;                // sorted by point, then offset
   std::vector<std::vector<std::size_t>> rigid_points;  // of each inclusion
 
   /// Bonds of a point that end on inclusions.
@@ -74,8 +74,8 @@ struct LatticeBody {
   [[nodiscard]] std::size_t family_size(std::size_t point) const;
 };
 
-/// Throws InputError when nothing is left of the body, a face to mirror does not exist or the lattice does not
-/// end at it.
+/// Throws InputError when nothing is left of the body, a face to mirror does not exist or the lattice does
+/// not end at it.
 LatticeBody make_lattice_body(const LatticeBodyInput& input);
 
 }  // namespace riven

@@ -8,11 +8,11 @@ namespace riven {
 
 /// The neighbours of a lattice point within the horizon: neighbour k of point i is `i + shift[k]`.
 struct Stencil {
-  std::vector<Cell> offset;            // in cells; no (0, 0, 0)
-  std::vector<std::ptrdiff_t> shift;   // in storage entries
-  std::vector<std::size_t> opposite;   // offset[opposite[k]] = -offset[k]
-  std::vector<Point> bond;             // reference bond vector (m)
-  std::vector<double> length;          // |bond| (m)
+  std::vector<Cell> offset;           // in cells; no (0, 0, 0)
+  std::vector<std::ptrdiff_t> shift;  // in storage entries
+  std::vector<std::size_t> opposite;  // offset[opposite[k]] = -offset[k]
+  std::vector<Point> bond;            // reference bond vector (m)
+  std::vector<double> length;         // |bond| (m)
 
   [[nodiscard]] std::size_t size() const { return offset.size(); }
 };

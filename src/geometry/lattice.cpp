@@ -6,7 +6,9 @@ namespace riven {
 
 namespace {
 
-std::size_t whole_vectors(int n) { return (static_cast<std::size_t>(n) + kLanes - 1) / kLanes * kLanes; }
+std::size_t whole_vectors(int n) {
+  return (static_cast<std::size_t>(n) + kLanes - 1) / kLanes * kLanes;
+}
 
 }  // namespace
 
@@ -21,7 +23,8 @@ Lattice::Lattice(int dimension, std::array<int, 3> cells, double spacing, const 
 }
 
 std::size_t Lattice::index(const Cell& cell) const {
-  const auto row = static_cast<std::size_t>((cell[2] + reach(2)) * (cells_[1] + 2 * reach(1)) + cell[1] + reach(1));
+  const auto row =
+      static_cast<std::size_t>((cell[2] + reach(2)) * (cells_[1] + 2 * reach(1)) + cell[1] + reach(1));
   return static_cast<std::size_t>(static_cast<std::ptrdiff_t>(row_begin(row) + left_) + cell[0]);
 }
 
@@ -29,7 +32,8 @@ Cell Lattice::cell(std::size_t index) const {
   const std::size_t along = (index - slack_) % row_;
   const auto row = static_cast<int>((index - slack_) / row_);
   const int rows_y = cells_[1] + 2 * reach(1);
-  return {static_cast<int>(along) - static_cast<int>(left_), row % rows_y - reach(1), row / rows_y - reach(2)};
+  return {static_cast<int>(along) - static_cast<int>(left_), row % rows_y - reach(1),
+          row / rows_y - reach(2)};
 }
 
 Point Lattice::position(const Cell& cell) const {

@@ -7,12 +7,13 @@
 
 namespace riven {
 
-/// Numbers of a cell along x, y, z, counted from the first cell of the body; ghost cells are below 0 or above.
+/// Numbers of a cell along x, y, z, counted from the first cell of the body; ghost cells are below 0 or
+/// above.
 using Cell = std::array<int, 3>;
 
-/// A uniform lattice in 1, 2 or 3 dimensions: one point at the centre of each cell, `reach` layers of room for
-/// ghost points around them, x running fastest. Rows are padded to whole vectors and the ends of the storage
-/// are padded too, so that a kernel may load whole vectors at any neighbour of any row.
+/// A uniform lattice in 1, 2 or 3 dimensions: one point at the centre of each cell, `reach` layers of room
+/// for ghost points around them, x running fastest. Rows are padded to whole vectors and the ends of the
+/// storage are padded too, so that a kernel may load whole vectors at any neighbour of any row.
 class Lattice {
  public:
   Lattice() = default;
@@ -57,8 +58,8 @@ class Lattice {
   std::array<int, 3> cells_{1, 1, 1};
   double spacing_ = 0;
   Point first_{};
-  std::size_t left_ = 0;   // padding before cell 0 of a row
-  std::size_t row_ = 0;    // entries of a row
+  std::size_t left_ = 0;  // padding before cell 0 of a row
+  std::size_t row_ = 0;   // entries of a row
   std::size_t rows_ = 0;
   std::size_t slack_ = 0;  // padding before the first and after the last row
   std::size_t size_ = 0;

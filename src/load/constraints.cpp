@@ -18,6 +18,7 @@ double offset(const Constraint& constraint, double parameter) {
 
 void Constraints::add(Constraint constraint) {
   free_[constraint.slave] = false;
+  if (constraint.master == Constraint::kNone) prescribed_at_[constraint.slave] = prescribed_.size();
   (constraint.master == Constraint::kNone ? prescribed_ : mirrored_).push_back(std::move(constraint));
   offset_.push_back(0.0);
   external_.push_back(0.0);
@@ -55,6 +56,11 @@ void Constraints::reduce(std::span<double> force) {
   reaction_norm_ = std::sqrt(square);
 }
 
+double Constraints::external_force(std::size_t dof) const {
+  const auto found = prescribed_at_.find(dof);
+  return found == prescribed_at_.end() ? 0 : external_[found->second];
+}
+
 void Constraints::fold(std::span<double> bound) const {
   for (const Constraint& constraint : mirrored_) {
     bound[constraint.master] += bound[constraint.slave];
@@ -77,7 +83,8 @@ AffineIncrement Constraints::affine_increment(double from, double to) const {
     Eigen::MatrixXd a(static_cast<Eigen::Index>(rows.size()), 4);
     Eigen::VectorXd b(a.rows());
     for (Eigen::Index r = 0; r < a.rows(); ++r) {
-      for (Eigen::Index c = 0; c < 4; ++c) a(r, c) = rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
+      for (Eigen::Index c = 0; c < 4; ++c)
+        a(r, c) = rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
       b(r) = rows[static_cast<std::size_t>(r)][4];
     }
     const Eigen::VectorXd fit = a.completeOrthogonalDecomposition().solve(b);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "geometry/shape.hpp"
@@ -17,15 +18,15 @@ using LoadFunction = std::function<double(const Point& position, double paramete
 
 /// One prescribed displacement component that enters a constraint, `factor` times.
 struct PrescribedTerm {
-  LoadFunction displacement;   // m
-  Point position{};            // where it is taken
+  LoadFunction displacement;  // m
+  Point position{};           // where it is taken
   int axis = 0;
   double factor = 1;
-  std::size_t load = 0;        // number of the load; its reaction collects this constraint's force
+  std::size_t load = 0;  // number of the load; its reaction collects this constraint's force
 };
 
-/// u[slave] = sign * u[master] + sum of factor * displacement. Without master: a prescribed entry. Ghost points of a
-/// mirrored edge are slaves of the points that they mirror (peridynamics theory, 5a rule 1).
+/// u[slave] = sign * u[master] + sum of factor * displacement. Without master: a prescribed entry. Ghost
+/// points of a mirrored edge are slaves of the points that they mirror (peridynamics theory, 5a rule 1).
 struct Constraint {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   std::size_t slave = 0;
@@ -34,7 +35,8 @@ struct Constraint {
   std::vector<PrescribedTerm> terms;
 };
 
-/// Displacement change of the prescribed places between two parameters, fitted by du_i = gradient_ij X_j + shift_i.
+/// Displacement change of the prescribed places between two parameters, fitted by du_i = gradient_ij X_j +
+/// shift_i.
 struct AffineIncrement {
   std::array<std::array<double, 3>, 3> gradient{};
   Point shift{};
@@ -52,29 +54,32 @@ class Constraints {
   void set_parameter(double parameter);
   /// Makes a state obey the constraints.
   void apply(std::span<double> u) const;
-  /// Takes the internal force out of the slaves: adds it to their masters by the chain rule, keeps what the constraints
-  /// must supply (reactions), and leaves 0 there.
+  /// Takes the internal force out of the slaves: adds it to their masters by the chain rule, keeps what the
+  /// constraints must supply (reactions), and leaves 0 there.
   void reduce(std::span<double> force);
   /// Adds a slave's row bound to its master's and leaves 0 at slaves: the bound of the constrained system.
   void fold(std::span<double> bound) const;
 
   [[nodiscard]] bool is_free(std::size_t dof) const { return free_[dof]; }
-  /// External force (N) along x, y, z that a load exerts on the body in the state of the last `reduce`; positive
-  /// pulls towards positive coordinates.
+  /// External force (N) along x, y, z that a load exerts on the body in the state of the last `reduce`;
+  /// positive pulls towards positive coordinates.
   [[nodiscard]] const Point& reaction(std::size_t load) const { return reaction_[load]; }
+  /// External force (N) on a prescribed entry in that state; 0 for others.
+  [[nodiscard]] double external_force(std::size_t dof) const;
   /// L2 norm of the constraint forces of the last `reduce` (N).
   [[nodiscard]] double reaction_norm() const { return reaction_norm_; }
 
-  /// Prescribed part of every constraint (m) and the external force on its slave (N), in one order: the work of the
-  /// loads is the integral of force over offset.
+  /// Prescribed part of every constraint (m) and the external force on its slave (N), in one order: the work
+  /// of the loads is the integral of force over offset.
   [[nodiscard]] std::span<const double> offsets() const { return offset_; }
   [[nodiscard]] std::span<const double> forces() const { return external_; }
 
   [[nodiscard]] AffineIncrement affine_increment(double from, double to) const;
 
  private:
-  std::vector<Constraint> prescribed_;   // without master: applied first, reduced last
+  std::vector<Constraint> prescribed_;  // without master: applied first, reduced last
   std::vector<Constraint> mirrored_;
+  std::unordered_map<std::size_t, std::size_t> prescribed_at_;  // number in prescribed_ by its slave
   std::vector<bool> free_;
   std::vector<double> offset_, external_;  // of prescribed_, then mirrored_
   std::vector<Point> reaction_;

@@ -6,7 +6,9 @@ namespace riven {
 
 namespace {
 
-std::size_t axis_of(std::size_t face) { return face / 2; }
+std::size_t axis_of(std::size_t face) {
+  return face / 2;
+}
 
 /// Coordinate of a face of the lattice's box (m).
 double face_coordinate(const Lattice& lattice, std::size_t face) {
@@ -20,7 +22,8 @@ std::vector<std::size_t> reflection_order(const Faces& faces, std::size_t compon
   std::vector<std::size_t> order;
   for (std::size_t face = 0; face < faces.size(); ++face)
     if (faces.test(face)) order.push_back(face);
-  std::stable_partition(order.begin(), order.end(), [&](std::size_t face) { return axis_of(face) == component; });
+  std::stable_partition(order.begin(), order.end(),
+                        [&](std::size_t face) { return axis_of(face) == component; });
   return order;
 }
 
@@ -29,7 +32,8 @@ std::vector<std::size_t> reflection_order(const Faces& faces, std::size_t compon
 void add_mirror_constraints(const LatticeBody& body, const std::array<std::optional<FaceLoad>, 6>& faces,
                             std::size_t component_stride, Constraints& constraints) {
   for (const GhostPoint& ghost : body.ghosts) {
-    for (std::size_t component = 0; component < static_cast<std::size_t>(body.lattice.dimension()); ++component) {
+    for (std::size_t component = 0; component < static_cast<std::size_t>(body.lattice.dimension());
+         ++component) {
       Constraint constraint;
       constraint.slave = component * component_stride + ghost.point;
       constraint.master = component * component_stride + ghost.master;

@@ -9,7 +9,9 @@ namespace {
 using Vector4 = Eigen::Vector4d;
 using Matrix4 = Eigen::Matrix4d;
 
-Vector4 flat(const Eigen::Matrix2d& m) { return {m(0, 0), m(0, 1), m(1, 0), m(1, 1)}; }
+Vector4 flat(const Eigen::Matrix2d& m) {
+  return {m(0, 0), m(0, 1), m(1, 0), m(1, 1)};
+}
 
 /// B_iJkL = -G_iL G_kJ, the derivative of G = F^-T.
 Matrix4 derivative_of_inverse_transpose(const Eigen::Matrix2d& g) {
@@ -42,8 +44,8 @@ PlaneResponse Material::plane_stress(const Eigen::Matrix2d& f) const {
   const Matrix4 GG = G * G.transpose();
   const Matrix4 FG = F * G.transpose();
   const Matrix4 dd1 = 2 * (unit + 2 / j2 * GG - 1 / j2 * B);
-  const Matrix4 dd2 = 2 * (2 * j2 * GG + j2 * B + unit / j2 - 2 / j2 * (FG + FG.transpose()) +
-                           2 * t / j2 * GG - t / j2 * B);
+  const Matrix4 dd2 =
+      2 * (2 * j2 * GG + j2 * B + unit / j2 - 2 / j2 * (FG + FG.transpose()) + 2 * t / j2 * GG - t / j2 * B);
 
   PlaneResponse response;
   response.energy = w.w;

@@ -9,9 +9,9 @@ namespace riven {
 
 /// What a law answers to a plane deformation gradient.
 struct PlaneResponse {
-  double energy = 0;         // strain energy density (J/m^3)
-  Eigen::Matrix2d stress;    // first Piola-Kirchhoff stress P_iJ (Pa)
-  Eigen::Matrix4d tangent;   // dP_iJ/dF_kL (Pa), rows and columns numbered 2 i + J
+  double energy = 0;        // strain energy density (J/m^3)
+  Eigen::Matrix2d stress;   // first Piola-Kirchhoff stress P_iJ (Pa)
+  Eigen::Matrix4d tangent;  // dP_iJ/dF_kL (Pa), rows and columns numbered 2 i + J
 };
 
 /// A constitutive law with its density; knows nothing of bodies and solvers.

@@ -24,8 +24,8 @@ struct ModelField {
   std::vector<double> values;
 };
 
-/// Body and materials. A state is one vector of displacements u (m); its layout belongs to the model. Solvers ask
-/// for forces and know no more than this interface.
+/// Body and materials. A state is one vector of displacements u (m); its layout belongs to the model. Solvers
+/// ask for forces and know no more than this interface.
 class Model {
  public:
   virtual ~Model() = default;
@@ -33,9 +33,10 @@ class Model {
   /// Length of a state vector. Entries that are no degree of freedom (padding) have zero force and mass.
   [[nodiscard]] virtual std::size_t dofs() const = 0;
 
-  /// Internal force -dE/du (N) at every entry. Returns what is wrong if the state is outside the model's range;
-  /// `force` is then not to be used.
-  [[nodiscard]] virtual std::optional<Breakdown> internal_force(std::span<const double> u, std::span<double> force) = 0;
+  /// Internal force -dE/du (N) at every entry. Returns what is wrong if the state is outside the model's
+  /// range; `force` is then not to be used.
+  [[nodiscard]] virtual std::optional<Breakdown> internal_force(std::span<const double> u,
+                                                                std::span<double> force) = 0;
 
   /// Strain energy E (J).
   [[nodiscard]] virtual double strain_energy(std::span<const double> u) = 0;
@@ -50,13 +51,16 @@ class Model {
   [[nodiscard]] virtual std::optional<Breakdown> inspect(std::span<const double> u) = 0;
 
   /// Adds the displacement field gradient X + shift (m) to a state, everywhere: a first guess for solvers.
-  virtual void move(std::span<double> u, const std::array<std::array<double, 3>, 3>& gradient, const Point& shift) const = 0;
+  virtual void move(std::span<double> u, const std::array<std::array<double, 3>, 3>& gradient,
+                    const Point& shift) const = 0;
 
   /// Undeformed positions, displacements (m) and other results of the points that are shown, in one order.
   [[nodiscard]] virtual std::vector<Point> positions() const = 0;
   [[nodiscard]] virtual std::vector<Point> displacements(std::span<const double> u) const = 0;
   [[nodiscard]] virtual std::vector<ModelField> fields(std::span<const double> u) = 0;
 
+  /// What follows from the case, a line each: constants of the material, kinds of points.
+  [[nodiscard]] virtual std::vector<std::string> describe() const = 0;
   /// Points, and directed bonds that one force evaluation visits.
   [[nodiscard]] virtual std::size_t points() const = 0;
   [[nodiscard]] virtual std::size_t bonds() const = 0;

@@ -4,8 +4,8 @@
 
 namespace riven {
 
-/// Strain energy density of an incompressible sheet as a function of the family averages a = <s^2> and b = <s^4>,
-/// with its derivatives. Peridynamics theory, eq. (7) and (8).
+/// Strain energy density of an incompressible sheet as a function of the family averages a = <s^2> and b =
+/// <s^4>, with its derivatives. Peridynamics theory, eq. (7) and (8).
 struct FamilyEnergy {
   double w = 0;
   double wa = 0, wb = 0;
@@ -13,7 +13,9 @@ struct FamilyEnergy {
 };
 
 /// Square of the area ratio, J^2 = 3 a^2 - 2 b.
-inline double area_ratio_squared(double a, double b) { return 3 * a * a - 2 * b; }
+inline double area_ratio_squared(double a, double b) {
+  return 3 * a * a - 2 * b;
+}
 
 template <class Law>
 FamilyEnergy family_energy(const Law& law, double a, double b) {
@@ -23,13 +25,15 @@ FamilyEnergy family_energy(const Law& law, double a, double b) {
   const double i1a = 2 - 6 * a * q2, i1b = 2 * q2;
   const double i2a = 6 * a + 2 * q - 12 * a * a * q2, i2b = -2 + 4 * a * q2;
   const double i1aa = -6 * q2 + 72 * a * a * q3, i1ab = -24 * a * q3, i1bb = 8 * q3;
-  const double i2aa = 6 - 36 * a * q2 + 144 * a * a * a * q3, i2ab = 4 * q2 - 48 * a * a * q3, i2bb = 16 * a * q3;
+  const double i2aa = 6 - 36 * a * q2 + 144 * a * a * a * q3, i2ab = 4 * q2 - 48 * a * a * q3,
+               i2bb = 16 * a * q3;
   return {
       .w = e.w,
       .wa = e.w1 * i1a + e.w2 * i2a,
       .wb = e.w1 * i1b + e.w2 * i2b,
       .waa = e.w1 * i1aa + e.w2 * i2aa + e.w11 * i1a * i1a + 2 * e.w12 * i1a * i2a + e.w22 * i2a * i2a,
-      .wab = e.w1 * i1ab + e.w2 * i2ab + e.w11 * i1a * i1b + e.w12 * (i1a * i2b + i2a * i1b) + e.w22 * i2a * i2b,
+      .wab =
+          e.w1 * i1ab + e.w2 * i2ab + e.w11 * i1a * i1b + e.w12 * (i1a * i2b + i2a * i1b) + e.w22 * i2a * i2b,
       .wbb = e.w1 * i1bb + e.w2 * i2bb + e.w11 * i1b * i1b + 2 * e.w12 * i1b * i2b + e.w22 * i2b * i2b,
   };
 }

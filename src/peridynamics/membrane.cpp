@@ -1,5 +1,7 @@
 #include "peridynamics/membrane.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -13,22 +15,28 @@ namespace riven {
 
 namespace {
 
-// Where the family is cut, short waves are held by fewer bonds and a full stabilisation would stiffen edges (5a, 5).
+// Where the family is cut, short waves are held by fewer bonds and a full stabilisation would stiffen edges
+// (5a, 5).
 constexpr double kCutFamilyStabilisation = 0.1;
 
-// Determinant of a family's shape tensor (trace 1) below which all its bonds lie on one line: two of a lattice's bonds that
-// do not have one of 0.02 and more.
+// Determinant of a family's shape tensor (trace 1) below which all its bonds lie on one line: two of a
+// lattice's bonds that do not have one of 0.02 and more.
 constexpr double kFlatFamily = 1e-4;
 
-Eigen::Vector2d plane(const Point& p) { return {p[0], p[1]}; }
+Eigen::Vector2d plane(const Point& p) {
+  return {p[0], p[1]};
+}
 
 }  // namespace
 
 Membrane::Membrane(LatticeBody body, Material material, double stabilisation)
     : body_(std::move(body)), material_(std::move(material)), stabilisation_(stabilisation) {
-  if (body_.lattice.dimension() != 2) throw InputError("a membrane is two-dimensional: give the box two sizes and a thickness");
+  if (body_.lattice.dimension() != 2)
+    throw InputError("a membrane is two-dimensional: give the box two sizes and a thickness");
   const std::size_t n = body_.lattice.size();
-  for (auto* plane : {&kappa_, &smallest_weight_, &mean_s2_, &mean_s4_, &energy_density_, &force_a_, &force_b_}) plane->assign(n, 0.0);
+  for (auto* plane :
+       {&kappa_, &smallest_weight_, &mean_s2_, &mean_s4_, &energy_density_, &force_a_, &force_b_})
+    plane->assign(n, 0.0);
   for (auto& plane : coefficient_) plane.assign(n, 0.0);
   for (auto& plane : mean_gradient_) plane.assign(n, 0.0);
   for (auto& plane : force_n_) plane.assign(n, 0.0);
@@ -70,17 +78,19 @@ std::vector<MembraneBond> Membrane::bonds_of(std::size_t point) const {
   std::vector<MembraneBond> bonds;
   for (std::size_t k = 0; k < stencil_.size(); ++k)
     if (body_.bonds.exists(k, point))
-      bonds.push_back({{stencil_[k].x, stencil_[k].y}, 0, BondPlanes::neighbour(body_.stencil, k, point), -1, {0, 0}});
+      bonds.push_back(
+          {{stencil_[k].x, stencil_[k].y}, 0, BondPlanes::neighbour(body_.stencil, k, point), -1, {0, 0}});
   const Eigen::Vector2d x = plane(body_.lattice.position(point));
   for (const InterfaceBond& bond : body_.interface_of(point)) {
     const Eigen::Vector2d end = plane(bond.end);
-    bonds.push_back({end - x, 0, 0, static_cast<int>(bond.inclusion), end - inclusions_[bond.inclusion].center});
+    bonds.push_back(
+        {end - x, 0, 0, static_cast<int>(bond.inclusion), end - inclusions_[bond.inclusion].center});
   }
   return bonds;
 }
 
-/// Directions of a family at the lattice's own lengths: a bond to an inclusion keeps the weight that it had before it
-/// was shortened (theory 5a, rule 4). The order is that of `bonds_of`.
+/// Directions of a family at the lattice's own lengths: a bond to an inclusion keeps the weight that it had
+/// before it was shortened (theory 5a, rule 4). The order is that of `bonds_of`.
 std::vector<PlaneBond> Membrane::unshortened_bonds_of(std::size_t point) const {
   std::vector<PlaneBond> bonds;
   for (std::size_t k = 0; k < stencil_.size(); ++k)
@@ -103,7 +113,8 @@ void Membrane::make_families() {
     directed_bonds_ += size;
     const bool at_interface = !body_.interface_of(i).empty();
     const bool is_whole = size == body_.stencil.size() && !at_interface;
-    FamilyWeights weights = is_whole && !whole.weight.empty() ? whole : moment_corrected_weights(unshortened_bonds_of(i));
+    FamilyWeights weights =
+        is_whole && !whole.weight.empty() ? whole : moment_corrected_weights(unshortened_bonds_of(i));
     if (is_whole && whole.weight.empty()) whole = weights;
     smallest_weight_[i] = weights.smallest_ratio;
     if (weights.kind == FamilyWeights::Kind::smooth && !at_interface) {
@@ -131,40 +142,56 @@ void Membrane::make_families() {
   }
 }
 
-Eigen::Vector2d Membrane::deformed(std::size_t point, const MembraneBond& bond, std::span<const double> u) const {
+Eigen::Vector2d Membrane::deformed(std::size_t point, const MembraneBond& bond,
+                                   std::span<const double> u) const {
   const std::size_t n = body_.lattice.size();
   const Eigen::Vector2d here(u[point], u[n + point]);
-  if (bond.inclusion < 0) return bond.reference + Eigen::Vector2d(u[bond.neighbour], u[n + bond.neighbour]) - here;
+  if (bond.inclusion < 0)
+    return bond.reference + Eigen::Vector2d(u[bond.neighbour], u[n + bond.neighbour]) - here;
   const auto inclusion = static_cast<std::size_t>(bond.inclusion);
   const std::size_t dof = inclusion_dof(inclusion);
   return bond.reference + inclusions_[inclusion].displacement(bond.arm, u, dof) - here;
 }
 
-Eigen::Vector2d Membrane::bond_force(const PointForce& law, const MembraneBond& bond, const Eigen::Vector2d& y) {
+Eigen::Vector2d Membrane::bond_force(const PointForce& law, const MembraneBond& bond,
+                                     const Eigen::Vector2d& y) {
   const double inverse2 = 1 / bond.reference.squaredNorm();
   return bond.weight * inverse2 * ((law.a + law.b * y.squaredNorm() * inverse2) * y + law.n * bond.reference);
 }
 
-std::size_t Membrane::dofs() const { return 2 * body_.lattice.size() + 3 * inclusions_.size(); }
+std::size_t Membrane::dofs() const {
+  return 2 * body_.lattice.size() + 3 * inclusions_.size();
+}
 
-std::size_t Membrane::inclusion_dof(std::size_t inclusion) const { return 2 * body_.lattice.size() + 3 * inclusion; }
+std::size_t Membrane::inclusion_dof(std::size_t inclusion) const {
+  return 2 * body_.lattice.size() + 3 * inclusion;
+}
 
 std::size_t Membrane::points_by_least_squares() const {
-  return static_cast<std::size_t>(std::count_if(listed_.begin(), listed_.end(), [](const ListedFamily& family) {
-    return family.by_least_squares;
-  }));
+  return static_cast<std::size_t>(std::count_if(
+      listed_.begin(), listed_.end(), [](const ListedFamily& family) { return family.by_least_squares; }));
 }
 
 std::size_t Membrane::points_by_gradient() const {
-  return static_cast<std::size_t>(
-      std::count_if(listed_.begin(), listed_.end(), [](const ListedFamily& family) { return family.by_gradient; }));
+  return static_cast<std::size_t>(std::count_if(
+      listed_.begin(), listed_.end(), [](const ListedFamily& family) { return family.by_gradient; }));
+}
+
+std::vector<std::string> Membrane::describe() const {
+  const double mu = shear_modulus(material_.law);
+  return {fmt::format("material {}: shear modulus {:.6g} Pa, Young's modulus {:.6g} Pa (incompressible)",
+                      material_.name, mu, 3 * mu),
+          fmt::format("weights: {} points by least squares, {} by the deformation gradient",
+                      points_by_least_squares(), points_by_gradient())};
 }
 
 std::size_t Membrane::bytes() const {
   const std::size_t n = body_.lattice.size();
-  constexpr std::size_t planes = kMoments + 4 + 4 + 7 + 1;  // doubles per stored point; the last is the body's volume
+  constexpr std::size_t planes =
+      kMoments + 4 + 4 + 7 + 1;  // doubles per stored point; the last is the body's volume
   std::size_t listed = 0;
-  for (const ListedFamily& family : listed_) listed += sizeof family + family.bonds.size() * sizeof(MembraneBond);
+  for (const ListedFamily& family : listed_)
+    listed += sizeof family + family.bonds.size() * sizeof(MembraneBond);
   return n * (planes * sizeof(double) + sizeof(std::ptrdiff_t) + sizeof(PointKind) + sizeof(std::uint16_t)) +
          n * body_.stencil.size() / 8 + body_.points.size() * sizeof(std::size_t) + listed;
 }
@@ -191,8 +218,9 @@ std::optional<Breakdown> Membrane::inspect(std::span<const double> u) {
   const auto& g = mean_gradient_;
   for (const std::size_t i : body_.points)
     if (!(g[0][i] * g[3][i] - g[1][i] * g[2][i] > 0))
-      return Breakdown{body_.lattice.position(i),
-                       "the sheet has folded over itself: the deformation gradient of a point has a determinant <= 0"};
+      return Breakdown{
+          body_.lattice.position(i),
+          "the sheet has folded over itself: the deformation gradient of a point has a determinant <= 0"};
   return std::nullopt;
 }
 
@@ -205,7 +233,8 @@ void Membrane::move(std::span<double> u, const std::array<std::array<double, 3>,
     for (const std::size_t i : body_.points)
       u[axis * body_.lattice.size() + i] += displacement(body_.lattice.position(i), axis);
     for (std::size_t c = 0; c < inclusions_.size(); ++c)
-      u[inclusion_dof(c) + axis] += displacement({inclusions_[c].center.x(), inclusions_[c].center.y(), 0}, axis);
+      u[inclusion_dof(c) + axis] +=
+          displacement({inclusions_[c].center.x(), inclusions_[c].center.y(), 0}, axis);
   }
 }
 
@@ -225,7 +254,8 @@ std::vector<Point> Membrane::displacements(std::span<const double> u) const {
     Inclusion inclusion = inclusions_[c];
     inclusion.rotation = Eigen::Rotation2Dd(u[dof + 2] / inclusion.gyration);
     for (const std::size_t i : body_.rigid_points[c]) {
-      const Eigen::Vector2d d = inclusion.displacement(plane(body_.lattice.position(i)) - inclusion.center, u, dof);
+      const Eigen::Vector2d d =
+          inclusion.displacement(plane(body_.lattice.position(i)) - inclusion.center, u, dof);
       displacements.push_back({d.x(), d.y(), 0});
     }
   }
@@ -259,23 +289,27 @@ std::vector<ModelField> Membrane::fields(std::span<const double> u) {
   return {std::move(damage), std::move(energy), std::move(stress), std::move(weight)};
 }
 
-/// Bounds of the second derivatives of a point's energy in its family sums, over the volume: by (a, b - 2 a0 a), a0 the
-/// present a. In a homogeneous state the second of these does not move, while in a and b alone large numbers would cancel.
+/// Bounds of the second derivatives of a point's energy in its family sums, over the volume: by (a, b - 2 a0
+/// a), a0 the present a. In a homogeneous state the second of these does not move, while in a and b alone
+/// large numbers would cancel.
 std::array<double, 3> Membrane::family_curvature(std::size_t point) const {
   const double a = mean_s2_[point], b = mean_s4_[point];
   if (listed_index_[point] >= 0 && listed_[static_cast<std::size_t>(listed_index_[point])].by_gradient) {
     // The energy is a function of F; its tangent is bounded through the stretches of the same family.
     Eigen::Matrix2d half_f;
-    half_f << mean_gradient_[0][point], mean_gradient_[1][point], mean_gradient_[2][point], mean_gradient_[3][point];
+    half_f << mean_gradient_[0][point], mean_gradient_[1][point], mean_gradient_[2][point],
+        mean_gradient_[3][point];
     return {material_.plane_stress(2 * half_f).tangent.norm() / a, 0, 0};
   }
   const FamilyEnergy e = std::visit([&](const auto& law) { return family_energy(law, a, b); }, material_.law);
-  return {std::abs(e.waa + 4 * a * e.wab + 4 * a * a * e.wbb), std::abs(e.wab + 2 * a * e.wbb), std::abs(e.wbb)};
+  return {std::abs(e.waa + 4 * a * e.wab + 4 * a * a * e.wbb), std::abs(e.wab + 2 * a * e.wbb),
+          std::abs(e.wbb)};
 }
 
 namespace {
 
-/// Length of the sum and sum of the lengths of a family's vectors: bounds rows of the outer product of the sums.
+/// Length of the sum and sum of the lengths of a family's vectors: bounds rows of the outer product of the
+/// sums.
 struct FamilySum {
   Eigen::Vector2d sum{0, 0};
   double lengths = 0;

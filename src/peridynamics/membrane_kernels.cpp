@@ -1,5 +1,5 @@
-// The loops over points and bonds of the membrane: first the averages over each family, then the forces. A row of the
-// lattice is one task and writes only its own points.
+// The loops over points and bonds of the membrane: first the averages over each family, then the forces. A
+// row of the lattice is one task and writes only its own points.
 
 #include <Eigen/LU>
 #include <cmath>
@@ -20,11 +20,28 @@ const double* at(const double* plane, std::size_t i, std::ptrdiff_t shift = 0) {
   return plane + static_cast<std::ptrdiff_t>(i) + shift;
 }
 
-Lanes select(LaneMask mask, Lanes value) { return mask ? value : Lanes{}; }
+Lanes select(LaneMask mask, Lanes value) {
+  return mask ? value : Lanes{};
+}
 
 struct Vector {
   Lanes x, y;
 };
+
+template <std::size_t N>
+std::array<Lanes, N> load_all(const std::array<std::vector<double>, N>& planes, std::size_t i,
+                              std::ptrdiff_t shift = 0) {
+  std::array<Lanes, N> lanes;
+  for (std::size_t n = 0; n < N; ++n) lanes[n] = load(at(planes[n].data(), i, shift));
+  return lanes;
+}
+
+/// Weight of a bond of the stencil in the families of eight points, from their coefficients; eq. (10).
+Lanes weight_of(const std::array<Lanes, kMoments>& coefficients, const Moments& bond) {
+  Lanes weight = coefficients[0] * bond[0];
+  for (std::size_t m = 1; m < kMoments; ++m) weight += coefficients[m] * bond[m];
+  return weight;
+}
 
 /// u_neighbour - u_point of eight points.
 Vector difference(const double* ux, const double* uy, std::size_t i, std::ptrdiff_t shift) {
@@ -51,8 +68,7 @@ void Membrane::average_row(std::size_t row, std::span<const double> u) {
   const double* uy = ux + body_.lattice.size();
   const std::size_t begin = body_.lattice.row_begin(row);
   for (std::size_t i = begin; i < begin + body_.lattice.row_length(); i += kLanes) {
-    std::array<Lanes, kMoments> c;
-    for (std::size_t m = 0; m < kMoments; ++m) c[m] = load(at(coefficient_[m].data(), i));
+    const auto coefficients = load_all(coefficient_, i);
     Lanes s2_sum{}, s4_sum{}, gxx{}, gxy{}, gyx{}, gyy{};
     for (std::size_t k = 0; k < stencil_.size(); ++k) {
       const std::uint8_t bits = body_.bonds.mask(k, i / kLanes);
@@ -60,9 +76,7 @@ void Membrane::average_row(std::size_t row, std::span<const double> u) {
       const StencilBond& bond = stencil_[k];
       const Vector du = difference(ux, uy, i, bond.shift);
       const Vector y = {bond.x + du.x, bond.y + du.y};
-      Lanes w = c[0] * bond.weight[0];
-      for (std::size_t m = 1; m < kMoments; ++m) w += c[m] * bond.weight[m];
-      w = select(expand(bits), w);
+      const Lanes w = select(expand(bits), weight_of(coefficients, bond.weight));
       const Lanes s2 = (y.x * y.x + y.y * y.y) * bond.inverse2;
       const Lanes ws2 = w * s2;
       s2_sum += ws2;
@@ -140,25 +154,29 @@ void Membrane::respond_listed(const ListedFamily& family, std::span<const double
   }
   mean_s2_[i] = a;
   mean_s4_[i] = b;
-  const Eigen::Matrix2d f = family.by_gradient ? Eigen::Matrix2d(m * family.inverse_shape) : Eigen::Matrix2d(2 * m);
+  const Eigen::Matrix2d f =
+      family.by_gradient ? Eigen::Matrix2d(m * family.inverse_shape) : Eigen::Matrix2d(2 * m);
   for (std::size_t c = 0; c < 4; ++c)  // half of F, as for the points of the formula
     mean_gradient_[c][i] = 0.5 * f(static_cast<Eigen::Index>(c / 2), static_cast<Eigen::Index>(c % 2));
   const double v = body_.volume[i], kappa = kappa_[i];
   const double stabilisation = kappa * (a - f.cwiseProduct(m).sum());
   if (family.by_gradient) {
-    mean_s4_[i] = 0.5 * (3 * a * a - f.determinant() * f.determinant());  // so that (7) tells a collapse here too
+    mean_s4_[i] =
+        0.5 * (3 * a * a - f.determinant() * f.determinant());  // so that (7) tells a collapse here too
     const PlaneResponse response = material_.plane_stress(f);
     set_point(i, response.energy + stabilisation,
               {2 * v * kappa, 0, v * (response.stress * family.inverse_shape - 2 * kappa * f)});
   } else {
-    const FamilyEnergy e = std::visit([&](const auto& law) { return family_energy(law, a, b); }, material_.law);
+    const FamilyEnergy e =
+        std::visit([&](const auto& law) { return family_energy(law, a, b); }, material_.law);
     set_point(i, e.w + stabilisation, {2 * v * (e.wa + kappa), 4 * v * e.wb, -2 * v * kappa * f});
   }
 }
 
 std::optional<Breakdown> Membrane::first_collapsed() const {
   const auto breakdown = [&](std::size_t i) {
-    return Breakdown{body_.lattice.position(i), "the sheet collapses: the area ratio of a family falls to zero"};
+    return Breakdown{body_.lattice.position(i),
+                     "the sheet collapses: the area ratio of a family falls to zero"};
   };
   for (const std::ptrdiff_t i : collapsed_in_row_)
     if (i >= 0) return breakdown(static_cast<std::size_t>(i));
@@ -171,16 +189,14 @@ std::optional<Breakdown> Membrane::first_collapsed() const {
 
 /// Forces on the points of a row: from their own law and from those of their neighbours (theory, eq. (1)).
 void Membrane::gather_row(std::size_t row, std::span<const double> u, std::span<double> force) const {
-  const std::size_t n = body_.lattice.size();
+  const std::size_t size = body_.lattice.size();
   const double* ux = u.data();
-  const double* uy = ux + n;
+  const double* uy = ux + size;
   const std::size_t begin = body_.lattice.row_begin(row);
   for (std::size_t i = begin; i < begin + body_.lattice.row_length(); i += kLanes) {
-    std::array<Lanes, kMoments> c;
-    for (std::size_t m = 0; m < kMoments; ++m) c[m] = load(at(coefficient_[m].data(), i));
+    const auto coefficients = load_all(coefficient_, i);
     const Lanes a = load(at(force_a_.data(), i)), b = load(at(force_b_.data(), i));
-    std::array<Lanes, 4> p;
-    for (std::size_t q = 0; q < 4; ++q) p[q] = load(at(force_n_[q].data(), i));
+    const auto n_own = load_all(force_n_, i);
     Lanes fx{}, fy{};
     for (std::size_t k = 0; k < stencil_.size(); ++k) {
       const std::uint8_t bits = body_.bonds.mask(k, i / kLanes);
@@ -189,23 +205,20 @@ void Membrane::gather_row(std::size_t row, std::span<const double> u, std::span<
       const Vector du = difference(ux, uy, i, bond.shift);
       const Vector y = {bond.x + du.x, bond.y + du.y};
       const Lanes s2 = (y.x * y.x + y.y * y.y) * bond.inverse2;
-      Lanes own = c[0] * bond.weight[0], far = load(at(coefficient_[0].data(), i, bond.shift)) * bond.weight[0];
-      for (std::size_t m = 1; m < kMoments; ++m) {
-        own += c[m] * bond.weight[m];
-        far += load(at(coefficient_[m].data(), i, bond.shift)) * bond.weight[m];
-      }
       const LaneMask mask = expand(bits);
-      own = select(mask, own * bond.inverse2);
-      far = select(mask, far * bond.inverse2);
+      const Lanes own = select(mask, weight_of(coefficients, bond.weight) * bond.inverse2);
+      const Lanes far =
+          select(mask, weight_of(load_all(coefficient_, i, bond.shift), bond.weight) * bond.inverse2);
       const Lanes t = own * (a + b * s2) + far * (load(at(force_a_.data(), i, bond.shift)) +
                                                   load(at(force_b_.data(), i, bond.shift)) * s2);
-      std::array<Lanes, 4> q;
-      for (std::size_t m = 0; m < 4; ++m) q[m] = own * p[m] + far * load(at(force_n_[m].data(), i, bond.shift));
-      fx += t * y.x + q[0] * bond.x + q[1] * bond.y;
-      fy += t * y.y + q[2] * bond.x + q[3] * bond.y;
+      const auto n_far = load_all(force_n_, i, bond.shift);
+      std::array<Lanes, 4> n;
+      for (std::size_t c = 0; c < 4; ++c) n[c] = own * n_own[c] + far * n_far[c];
+      fx += t * y.x + n[0] * bond.x + n[1] * bond.y;
+      fy += t * y.y + n[2] * bond.x + n[3] * bond.y;
     }
     store(force.data() + i, fx);
-    store(force.data() + n + i, fy);
+    store(force.data() + size + i, fy);
   }
 }
 

@@ -20,8 +20,8 @@ using Moments = std::array<double, kMoments>;
 /// The angular functions of a bond's direction.
 Moments angular_functions(const PlaneBond& bond);
 
-/// Weights of a family, sum 1, whose averages of the angular functions vanish, so that averages over the family
-/// are those over all directions. Peridynamics theory, eq. (10).
+/// Weights of a family, sum 1, whose averages of the angular functions vanish, so that averages over the
+/// family are those over all directions. Peridynamics theory, eq. (10).
 struct FamilyWeights {
   enum class Kind {
     smooth,    // w0 times a combination of the angular functions
@@ -29,9 +29,9 @@ struct FamilyWeights {
     gradient,  // no non-negative weights have the right moments: w0 itself, normalised
   };
   Kind kind = Kind::smooth;
-  Moments coefficients{};          // of the combination, for `smooth`
-  std::vector<double> weight;      // one per bond
-  double smallest_ratio = 0;       // min weight / w0 before any repair (w0 normalised)
+  Moments coefficients{};      // of the combination, for `smooth`
+  std::vector<double> weight;  // one per bond
+  double smallest_ratio = 0;   // min weight / w0 before any repair (w0 normalised)
 };
 
 /// `bonds`: the family (any number, also none); base weight w0 = 1/length.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "load/mirror.hpp"
+#include "peridynamics/membrane.hpp"
 #include "simulation/preflight.hpp"
 #include "simulation/simulation.hpp"
 
@@ -88,11 +89,11 @@ LatticeBody make_body(const Case& in) {
 PointSet make_set(const SetInput& in, const LatticeBody& body) {
   PointSet set{in.name, {}};
   const double touch = 1e-9 * body.lattice.spacing();
-  for (const std::size_t i : body.points) {
-    const Point x = body.lattice.position(i);
+  for (std::size_t n = 0; n < body.points.size(); ++n) {
+    const Point x = body.lattice.position(body.points[n]);
     const bool inside =
         in.where ? (*in.where)(Variables{.position = x}) != 0 : signed_distance(*in.shape, x) <= touch;
-    if (inside) set.points.push_back(i);
+    if (inside) set.points.push_back(n);
   }
   if (set.points.empty())
     throw InputError(
@@ -109,11 +110,20 @@ LoadFunction make_function(const Expression& expression, Parameter parameter) {
   };
 }
 
+std::unique_ptr<Membrane> make_model(const Case& in, LatticeBody body) {
+  const Material material = make_material(in.materials.front());
+  try {
+    return std::make_unique<Membrane>(std::move(body), material, in.model.stabilisation);
+  } catch (const InputError& error) {
+    throw InputError(in.model.at, std::string("model: ") + error.what());
+  }
+}
+
 /// Turns loads into constraints on the state of the model.
 class LoadBuilder {
  public:
-  explicit LoadBuilder(Simulation& simulation)
-      : simulation_(simulation), body_(simulation.model->body()), loaded_(simulation.model->dofs(), false) {}
+  LoadBuilder(Simulation& simulation, const Membrane& model)
+      : simulation_(simulation), model_(model), body_(model.body()), loaded_(model.dofs(), false) {}
 
   void build() {
     for (const LoadInput& load : simulation_.input.loads)
@@ -157,41 +167,40 @@ class LoadBuilder {
 
   void displace_set(const LoadInput& load, const Named& on) {
     const PointSet& set = simulation_.set(on.text);
-    const std::size_t number = simulation_.load_number(on.text);
     for (std::size_t axis = 0; axis < load.displacement.size(); ++axis) {
       const auto& value = load.displacement[axis].value;
       if (!value) continue;
       const LoadFunction function = make_function(*value, simulation_.parameter);
       for (const std::size_t point : set.points) {
-        const std::size_t dof = axis * body_.lattice.size() + point;
+        const std::size_t dof = simulation_.entry(axis, point);
         if (loaded_[dof])
           throw InputError(
               on.at, fmt::format("load: points of \"{}\" are displaced twice; expected sets without common "
                                  "points, or other components free",
                                  on.text));
         loaded_[dof] = true;
-        simulation_.constraints->add(
-            {.slave = dof,
-             .terms = {{function, body_.lattice.position(point), static_cast<int>(axis), 1, number}}});
+        simulation_.constraints->add({.slave = dof,
+                                      .terms = {{function, body_.lattice.position(body_.points[point]),
+                                                 static_cast<int>(axis), 1, kFaces}}});
       }
     }
   }
 
   void hold_fixed_inclusions() {
-    const std::size_t number = kFaces + simulation_.sets.size();
     for (std::size_t n = 0; n < simulation_.input.inclusions.size(); ++n) {
       if (simulation_.input.inclusions[n].motion != "fixed") continue;
       for (std::size_t d = 0; d < 3; ++d) {
-        Constraint constraint{.slave = simulation_.model->inclusion_dof(n) + d, .terms = {}};
+        Constraint constraint{.slave = model_.inclusion_dof(n) + d, .terms = {}};
         if (d < 2)
           constraint.terms.push_back(
-              {[](const Point&, double) { return 0.0; }, Point{}, static_cast<int>(d), 1, number});
+              {[](const Point&, double) { return 0.0; }, Point{}, static_cast<int>(d), 1, kFaces});
         simulation_.constraints->add(std::move(constraint));
       }
     }
   }
 
   Simulation& simulation_;
+  const Membrane& model_;
   const LatticeBody& body_;
   std::array<std::optional<FaceLoad>, kFaces> faces_;
   std::array<Location, kFaces> face_at_;
@@ -213,16 +222,14 @@ const PointSet& Simulation::set(const std::string& name) const {
   return *found;
 }
 
-std::size_t Simulation::load_number(const std::string& name) const {
-  if (const auto number = face(name)) return *number;
-  return kFaces + static_cast<std::size_t>(&set(name) - sets.data());
+std::size_t Simulation::entry(std::size_t axis, std::size_t number) const {
+  return axis * body->lattice.size() + body->points[number];
 }
 
 double Simulation::face_area(std::size_t face) const {
-  const LatticeBody& body = model->body();
-  double area = body.thickness;
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(body.lattice.dimension()); ++axis)
-    if (axis != face / 2) area *= body.lattice.cells()[axis] * body.lattice.spacing();
+  double area = body->thickness;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(body->lattice.dimension()); ++axis)
+    if (axis != face / 2) area *= body->lattice.cells()[axis] * body->lattice.spacing();
   return area;
 }
 
@@ -233,17 +240,11 @@ Simulation build_simulation(const Case& input) {
   simulation.parameter = input.solver.method == "verlet" ? Parameter::time : Parameter::stretch;
   LatticeBody body = make_body(input);
   for (const SetInput& set : input.sets) simulation.sets.push_back(make_set(set, body));
-  try {
-    simulation.model = std::make_unique<Membrane>(std::move(body), make_material(input.materials.front()),
-                                                  input.model.stabilisation);
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    if (what.starts_with(input.file.string())) throw;
-    throw InputError(input.model.at, "model: " + what);
-  }
-  simulation.constraints =
-      std::make_unique<Constraints>(simulation.model->dofs(), kFaces + simulation.sets.size() + 1);
-  LoadBuilder(simulation).build();
+  auto model = make_model(input, std::move(body));
+  simulation.body = &model->body();
+  simulation.constraints = std::make_unique<Constraints>(model->dofs(), kFaces + 1);
+  LoadBuilder(simulation, *model).build();
+  simulation.model = std::move(model);
   return simulation;
 }
 

@@ -120,7 +120,7 @@ bool jumps_at_start(const Simulation& simulation) {
   std::vector<double> u(simulation.model->dofs(), 0.0);
   simulation.constraints->set_parameter(simulation.parameter == Parameter::time ? 0 : 1);
   simulation.constraints->apply(u);
-  const double noticeable = 1e-6 * simulation.model->body().lattice.spacing();
+  const double noticeable = 1e-6 * simulation.body->lattice.spacing();
   return std::any_of(u.begin(), u.end(), [&](double value) { return !(std::abs(value) <= noticeable); });
 }
 
@@ -177,7 +177,7 @@ void check_before_run(const Simulation& simulation, const Probes& probes) {
 
 std::vector<std::string> warnings(const Simulation& simulation) {
   std::vector<std::string> list;
-  const LatticeBody& body = simulation.model->body();
+  const LatticeBody& body = *simulation.body;
   const double ratio = body.horizon / body.lattice.spacing();
   if (ratio < 2.9)
     list.push_back(fmt::format(
@@ -240,7 +240,7 @@ void check_memory(const GeometryInput& geometry) {
 TimeEstimate time_estimate(const Simulation& simulation) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds kMoment{200};
-  Membrane& model = *simulation.model;
+  Model& model = *simulation.model;
   const std::vector<double> rest(model.dofs(), 0.0);
   std::vector<double> force(model.dofs());
   const auto evaluate = [&] { static_cast<void>(model.internal_force(rest, force)); };
@@ -264,7 +264,7 @@ TimeEstimate time_estimate(const Simulation& simulation) {
     estimate.evaluations = std::ceil(solver.until / solver.step.value_or(step));
   } else {
     constexpr double kPerPointAlongSide = 3.5;  // waves must cross the body a few times in each load step
-    const auto& cells = model.body().lattice.cells();
+    const auto& cells = simulation.body->lattice.cells();
     estimate.evaluations =
         kPerPointAlongSide * *std::max_element(cells.begin(), cells.end()) * load_steps(solver);
   }

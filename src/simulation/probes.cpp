@@ -15,11 +15,11 @@ constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 /// Displacements anywhere in the body at one state.
 class DisplacementField {
  public:
-  DisplacementField(const Membrane& model, std::span<const double> u)
-      : positions_(model.positions()),
-        displacements_(model.displacements(u)),
-        interpolation_(positions_, displacements_, model.body().defects, model.body().lattice.spacing(),
-                       model.body().horizon) {}
+  DisplacementField(const Simulation& simulation, std::span<const double> u)
+      : positions_(simulation.model->positions()),
+        displacements_(simulation.model->displacements(u)),
+        interpolation_(positions_, displacements_, simulation.body->defects,
+                       simulation.body->lattice.spacing(), simulation.body->horizon) {}
 
   [[nodiscard]] Point at(const Point& place, const ProbeInput& probe) const {
     const auto displacement = interpolation_.at(place);
@@ -58,14 +58,14 @@ Probes::Probes(const Simulation& simulation) : simulation_(simulation) {
                                        probe.name, columns_[n].name));
   }
   const std::vector<double> rest(simulation.model->dofs(), 0.0);
-  const DisplacementField field(*simulation.model, rest);
+  const DisplacementField field(simulation, rest);
   for (const ProbeInput& probe : simulation.input.probes)
     for (const auto& place : {probe.position, probe.from, probe.to})
       if (place) static_cast<void>(field.at(*place, probe));
 }
 
 void Probes::add_columns(const ProbeInput& probe) {
-  const auto dimension = static_cast<std::size_t>(simulation_.model->body().lattice.dimension());
+  const auto dimension = static_cast<std::size_t>(simulation_.body->lattice.dimension());
   const auto vector = [&](const std::string& name, const std::string& unit) {
     for (std::size_t a = 0; a < dimension; ++a) columns_.push_back({name + "_" + kAxes[a], unit});
   };
@@ -79,27 +79,21 @@ void Probes::add_columns(const ProbeInput& probe) {
 }
 
 std::vector<double> Probes::evaluate(const State& state, const Constraints& constraints) const {
-  const Membrane& model = *simulation_.model;
-  const auto dimension = static_cast<std::size_t>(model.body().lattice.dimension());
-  const DisplacementField field(model, state.u);
+  const auto dimension = static_cast<std::size_t>(simulation_.body->lattice.dimension());
+  const DisplacementField field(simulation_, state.u);
   std::vector<double> values;
   const auto add = [&](const Point& vector, double divisor) {
     for (std::size_t a = 0; a < dimension; ++a) values.push_back(vector[a] / divisor);
   };
   for (const ProbeInput& probe : simulation_.input.probes) {
     const auto face = Simulation::face(probe.on.text);
-    if (probe.kind == "reaction") add(constraints.reaction(simulation_.load_number(probe.on.text)), 1);
+    if (probe.kind == "reaction")
+      add(face ? constraints.reaction(*face) : reaction_of(simulation_.set(probe.on.text), constraints), 1);
     if (probe.kind == "nominal-stress" && face)
       add(constraints.reaction(*face), simulation_.face_area(*face));
     if (probe.kind == "nominal-stress" && !face) {
-      Eigen::Matrix2d stress = Eigen::Matrix2d::Zero();
-      double volume = 0;
-      for (const std::size_t i : simulation_.set(probe.on.text).points) {
-        stress += model.body().volume[i] * model.nominal_stress(i, state.u);
-        volume += model.body().volume[i];
-      }
-      stress /= volume;
-      values.insert(values.end(), {stress(0, 0), stress(0, 1), stress(1, 0), stress(1, 1)});
+      const std::array<double, 9> stress = mean_stress(simulation_.set(probe.on.text), state.u);
+      values.insert(values.end(), {stress[0], stress[1], stress[3], stress[4]});
     }
     if (probe.kind == "displacement") add(field.at(*probe.position, probe), 1);
     if (probe.kind == "stretch")
@@ -108,6 +102,31 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
                        distance_between(*probe.from, *probe.to));
   }
   return values;
+}
+
+/// External force on the points of a set, whichever load holds them.
+Point Probes::reaction_of(const PointSet& set, const Constraints& constraints) const {
+  Point sum{};
+  for (const std::size_t number : set.points)
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(simulation_.body->lattice.dimension()); ++axis)
+      sum[axis] += constraints.external_force(simulation_.entry(axis, number));
+  return sum;
+}
+
+/// Nominal stress of a set, averaged over its volume, row by row.
+std::array<double, 9> Probes::mean_stress(const PointSet& set, std::span<const double> u) const {
+  std::array<double, 9> mean{};
+  double volume = 0;
+  for (const ModelField& field : simulation_.model->fields(u)) {
+    if (field.name != "nominal_stress") continue;
+    for (const std::size_t number : set.points) {
+      const double here = simulation_.body->volume[simulation_.body->points[number]];
+      volume += here;
+      for (std::size_t c = 0; c < 9; ++c) mean[c] += here * field.values[9 * number + c];
+    }
+  }
+  for (double& component : mean) component /= volume;
+  return mean;
 }
 
 Metrics Probes::metrics(const std::vector<double>& values) const {

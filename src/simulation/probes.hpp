@@ -25,6 +25,8 @@ class Probes {
 
  private:
   void add_columns(const ProbeInput& probe);
+  [[nodiscard]] Point reaction_of(const PointSet& set, const Constraints& constraints) const;
+  [[nodiscard]] std::array<double, 9> mean_stress(const PointSet& set, std::span<const double> u) const;
 
   const Simulation& simulation_;
   std::vector<HistoryColumn> columns_;

@@ -4,25 +4,27 @@
 #include <string>
 #include <vector>
 
+#include "body/lattice_body.hpp"
 #include "input/case.hpp"
 #include "load/constraints.hpp"
+#include "model/model.hpp"
 #include "output/parameter.hpp"
-#include "peridynamics/membrane.hpp"
 
 namespace riven {
 
 /// Body points that the user gave a name.
 struct PointSet {
   std::string name;
-  std::vector<std::size_t> points;  // storage indices
+  std::vector<std::size_t> points;  // their numbers in the list of the body's points
 };
 
-/// Everything a run needs, built from a case. Loads are numbered 0 to 5 for the faces, then one per set, then
-/// one for the inclusions that are held.
+/// Everything a run needs, built from a case. Reactions are collected under 0 to 5 for the faces, and under 6
+/// for points and inclusions that are held.
 struct Simulation {
   Case input;
   Parameter parameter = Parameter::stretch;  // what the solver marches
-  std::unique_ptr<Membrane> model;
+  std::unique_ptr<Model> model;
+  const LatticeBody* body = nullptr;  // the model's
   std::unique_ptr<Constraints> constraints;
   std::vector<PointSet> sets;
 
@@ -30,8 +32,8 @@ struct Simulation {
   static std::optional<std::size_t> face(const std::string& name);
   /// A declared set. The input layer has checked that it exists.
   [[nodiscard]] const PointSet& set(const std::string& name) const;
-  /// Where the reactions of a load on a face or set are collected.
-  [[nodiscard]] std::size_t load_number(const std::string& name) const;
+  /// Entry of a state that holds component `axis` of a body point: lattice models keep a plane per component.
+  [[nodiscard]] std::size_t entry(std::size_t axis, std::size_t number) const;
   /// Reference area (m^2) of a face of the box.
   [[nodiscard]] double face_area(std::size_t face) const;
 };

@@ -12,16 +12,16 @@ namespace riven {
 
 namespace {
 
-constexpr int kMostCuts = 8;            // a step may be halved this often before the run gives up
-constexpr double kFirstStep = 0.01;     // of the increment: tells the direction in which the body deforms
-constexpr double kLargestDamping = 1.9; // below the critical 2 of eq. (11)
-constexpr int kProgressEvery = 50;      // iterations
+constexpr int kMostCuts = 8;             // a step may be halved this often before the run gives up
+constexpr double kFirstStep = 0.01;      // of the increment: tells the direction in which the body deforms
+constexpr double kLargestDamping = 1.9;  // below the critical 2 of eq. (11)
+constexpr int kProgressEvery = 50;       // iterations
 
 /// Sums that one iteration needs, gathered in one sweep.
 struct Sums {
-  double force2 = 0;            // F.F over free entries
-  double stiffness = 0;         // v.K v, with K v = -(change of F) since the last step moved u by v
-  double inertia = 0;           // v.D v
+  double force2 = 0;     // F.F over free entries
+  double stiffness = 0;  // v.K v, with K v = -(change of F) since the last step moved u by v
+  double inertia = 0;    // v.D v
 
   Sums& operator+=(const Sums& other) {
     force2 += other.force2;
@@ -33,7 +33,8 @@ struct Sums {
 
 class Relaxation {
  public:
-  Relaxation(Model& model, Constraints& constraints, const DynamicRelaxationSettings& settings, Observer& observer)
+  Relaxation(Model& model, Constraints& constraints, const DynamicRelaxationSettings& settings,
+             Observer& observer)
       : model_(model), constraints_(constraints), settings_(settings), observer_(observer), n_(model.dofs()) {
     state_.u.assign(n_, 0.0);
     state_.parameter = settings.start;
@@ -55,7 +56,8 @@ class Relaxation {
     while (direction * (target - state_.parameter) > 1e-12 * std::abs(target)) {
       const double left = std::abs(target - state_.parameter);
       // Equal steps to the target, none of them a crumb.
-      const double step = state_.steps == 0 ? std::min(left, kFirstStep * increment) : left / std::ceil(left / increment - 1e-9);
+      const double step = state_.steps == 0 ? std::min(left, kFirstStep * increment)
+                                            : left / std::ceil(left / increment - 1e-9);
       const bool last = step > left * (1 - 1e-9);
       const auto failure = load_step(last ? target : state_.parameter + direction * step);
       if (!failure) {
@@ -76,11 +78,13 @@ class Relaxation {
   }
 
   [[noreturn]] void give_up(const std::string& failure) const {
-    throw SolverFailure(fmt::format(
-        "no equilibrium beyond {:.6g}, not even with load steps {} times smaller: {}. The sheet may have lost "
-        "stability there (wrinkling, folding), or the law may not stand the load; try a smaller solver.increment, a finer "
-        "lattice, or look at the last good state",
-        state_.parameter, 1 << kMostCuts, failure));
+    throw SolverFailure(
+        fmt::format("no equilibrium beyond {:.6g}, not even with load steps {} times smaller: {}. The sheet "
+                    "may have lost "
+                    "stability there (wrinkling, folding), or the law may not stand the load; try a smaller "
+                    "solver.increment, a finer "
+                    "lattice, or look at the last good state",
+                    state_.parameter, 1 << kMostCuts, failure));
   }
 
   /// Takes the state to a new parameter, or leaves it as it was and says why.
@@ -125,14 +129,16 @@ class Relaxation {
       const Sums sums = sweep();
       const double residual = std::sqrt(sums.force2) / constraints_.reaction_norm();
       if (!std::isfinite(sums.force2)) return "the forces are no longer finite";
-      if (iteration % kProgressEvery == 0 || residual <= settings_.tolerance) report(target, iteration, residual);
+      if (iteration % kProgressEvery == 0 || residual <= settings_.tolerance)
+        report(target, iteration, residual);
       if (std::sqrt(sums.force2) <= settings_.tolerance * constraints_.reaction_norm()) {
         const auto breakdown = model_.inspect(state_.u);
         return breakdown ? std::make_optional(describe(*breakdown)) : std::nullopt;
       }
       advance(damping(sums), iteration == 0);
     }
-    return fmt::format("not converged in the {} iterations of solver.max_iterations", settings_.max_iterations);
+    return fmt::format("not converged in the {} iterations of solver.max_iterations",
+                       settings_.max_iterations);
   }
 
   std::optional<Breakdown> evaluate() {
@@ -161,8 +167,9 @@ class Relaxation {
     });
   }
 
-  /// Critical damping of the frequency at which the body moves now. Eq. (11) takes the quotient over the displacement since the
-  /// last load step, entry by entry; where that is mostly the load's own affine part it says nothing of the motion that is left.
+  /// Critical damping of the frequency at which the body moves now. Eq. (11) takes the quotient over the
+  /// displacement since the last load step, entry by entry; where that is mostly the load's own affine part
+  /// it says nothing of the motion that is left.
   static double damping(const Sums& sums) {
     if (!(sums.stiffness > 0) || !(sums.inertia > 0)) return 0;
     return std::min(2 * std::sqrt(sums.stiffness / sums.inertia), kLargestDamping);
@@ -170,9 +177,7 @@ class Relaxation {
 
   void advance(double c, bool first) {
     const double keep = first ? 0 : (2 - c) / (2 + c), push = first ? 0.5 : 2 / (2 + c);
-    const auto pieces = static_cast<std::ptrdiff_t>((n_ + kSumChunk - 1) / kSumChunk);
-    parallel_for(pieces, [&](std::ptrdiff_t p) {
-      const std::size_t begin = static_cast<std::size_t>(p) * kSumChunk, end = std::min(begin + kSumChunk, n_);
+    parallel_pieces(n_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (mass_[i] == 0) continue;
         velocity_[i] = keep * velocity_[i] + push * force_[i] / mass_[i];
@@ -215,14 +220,15 @@ class Relaxation {
   State state_;
   WorkIntegral work_{WorkIntegral::Rule::parabolic};
   std::vector<double> force_, old_force_, velocity_, mass_;
-  std::vector<double> before_;   // state one load step back
-  double last_change_ = 0;       // of the parameter in the last load step
-  int good_steps_ = 0;           // since the last cut
+  std::vector<double> before_;  // state one load step back
+  double last_change_ = 0;      // of the parameter in the last load step
+  int good_steps_ = 0;          // since the last cut
 };
 
 }  // namespace
 
-State relax(Model& model, Constraints& constraints, const DynamicRelaxationSettings& settings, Observer& observer) {
+State relax(Model& model, Constraints& constraints, const DynamicRelaxationSettings& settings,
+            Observer& observer) {
   return Relaxation(model, constraints, settings, observer).run();
 }
 

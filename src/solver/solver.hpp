@@ -25,23 +25,23 @@ struct EnergyBalance {
 
 /// What a solver has reached.
 struct State {
-  double parameter = 1;      // stretch in statics, time (s) in dynamics
-  std::vector<double> u;     // displacements, the model's layout
-  std::vector<double> v;     // velocities; empty in statics
+  double parameter = 1;   // stretch in statics, time (s) in dynamics
+  std::vector<double> u;  // displacements, the model's layout
+  std::vector<double> v;  // velocities; empty in statics
   EnergyBalance energy;
-  long steps = 0;            // load or time steps
-  long evaluations = 0;      // of the force
+  long steps = 0;        // load or time steps
+  long evaluations = 0;  // of the force
 };
 
 /// What a solver is doing, for those who wait.
 struct SolverProgress {
-  double parameter = 0;      // aimed at (statics) or reached (dynamics)
-  double reached = 0;        // by the last complete step
-  double begin = 0, end = 0; // of the whole run
-  long step = 0;             // of `steps`, as far as one can tell (statics); taken (dynamics)
+  double parameter = 0;       // aimed at (statics) or reached (dynamics)
+  double reached = 0;         // by the last complete step
+  double begin = 0, end = 0;  // of the whole run
+  long step = 0;              // of `steps`, as far as one can tell (statics); taken (dynamics)
   long steps = 0;
-  long iteration = 0;        // within the step
-  double residual = 0;       // free force / reaction; 0 in dynamics
+  long iteration = 0;   // within the step
+  double residual = 0;  // free force / reaction; 0 in dynamics
   double tolerance = 0;
 };
 
@@ -57,7 +57,8 @@ class Observer {
   virtual void remarked(const std::string&) {}
 };
 
-/// A solver could not go on: why, where it happened and what might help. The observers hold the last good state.
+/// A solver could not go on: why, where it happened and what might help. The observers hold the last good
+/// state.
 class SolverFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -14,7 +14,8 @@ namespace riven {
 namespace {
 
 constexpr long kStepsBetweenEstimates = 100;
-// Verlet keeps the energy to the square of step times frequency, a few per cent at the most; beyond this the run is lost.
+// Verlet keeps the energy to the square of step times frequency, a few per cent at the most; beyond this the
+// run is lost.
 constexpr double kRunaway = 0.1;
 
 /// Times at which something is written: multiples of an interval, and the end.
@@ -101,9 +102,7 @@ class Verlet {
 
   /// v += kick * F / m, then u += drift * v.
   void kick(double kick, double drift) {
-    const auto pieces = static_cast<std::ptrdiff_t>((n_ + kSumChunk - 1) / kSumChunk);
-    parallel_for(pieces, [&](std::ptrdiff_t p) {
-      const std::size_t begin = static_cast<std::size_t>(p) * kSumChunk, end = std::min(begin + kSumChunk, n_);
+    parallel_pieces(n_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (mass_[i] == 0) continue;
         state_.v[i] += kick * force_[i] / mass_[i];
@@ -126,11 +125,12 @@ class Verlet {
     }
     step_ = *settings_.step;
     if (step_ <= limit) return;
-    const std::string what =
-        fmt::format("the step {:.4g} s is above the stable one, {:.4g} s", step_, limit);
+    const std::string what = fmt::format("the step {:.4g} s is above the stable one, {:.4g} s", step_, limit);
     if (state_.steps == 0) throw InputError(what + "; leave solver.step out to have it chosen");
-    throw SolverFailure(fmt::format("at t = {:.6g} s {}: the body has stiffened as it deformed; leave solver.step out to "
-                                    "have it follow", state_.parameter, what));
+    throw SolverFailure(
+        fmt::format("at t = {:.6g} s {}: the body has stiffened as it deformed; leave solver.step out to "
+                    "have it follow",
+                    state_.parameter, what));
   }
 
   /// Energy of motions too small to tell from rounding: a body at rest keeps no balance worth watching.
@@ -148,9 +148,11 @@ class Verlet {
 
   void balance() {
     EnergyBalance& energy = state_.energy;
-    energy.kinetic = ordered_sum_of(n_, [&](std::size_t i) { return 0.5 * mass_[i] * state_.v[i] * state_.v[i]; });
+    energy.kinetic =
+        ordered_sum_of(n_, [&](std::size_t i) { return 0.5 * mass_[i] * state_.v[i] * state_.v[i]; });
     energy.strain = model_.strain_energy(state_.u) - start_energy_;
-    energy.largest = std::max({energy.largest, energy.kinetic, std::abs(energy.strain), std::abs(energy.external_work)});
+    energy.largest =
+        std::max({energy.largest, energy.kinetic, std::abs(energy.strain), std::abs(energy.external_work)});
   }
 
   void check_energy_now() {
@@ -162,18 +164,20 @@ class Verlet {
     if (const auto breakdown = model_.inspect(state_.u)) fail(*breakdown);
     const double error = state_.energy.error();
     if (std::abs(error) <= kRunaway || state_.energy.largest <= rounding_energy()) return;
-    throw SolverFailure(fmt::format(
-        "at t = {:.6g} s, step {}, the energy runs away: {:.1f} % of it came from nowhere. The step of {:.4g} s is likely "
-        "too long for this deformation; try a smaller solver.safety",
-        state_.parameter, state_.steps, 100 * error, step_));
+    throw SolverFailure(
+        fmt::format("at t = {:.6g} s, step {}, the energy runs away: {:.1f} % of it came from nowhere. The "
+                    "step of {:.4g} s is likely "
+                    "too long for this deformation; try a smaller solver.safety",
+                    state_.parameter, state_.steps, 100 * error, step_));
   }
 
   [[noreturn]] void fail(const Breakdown& breakdown) const {
-    throw SolverFailure(fmt::format("at t = {:.6g} s, step {}: {} at ({:.4g}, {:.4g}, {:.4g}) m. The load may be too fast or "
-                                    "too large for this lattice and law; try a slower load, a finer lattice or a smaller "
-                                    "solver.safety",
-                                    state_.parameter, state_.steps, breakdown.what, breakdown.position[0],
-                                    breakdown.position[1], breakdown.position[2]));
+    throw SolverFailure(
+        fmt::format("at t = {:.6g} s, step {}: {} at ({:.4g}, {:.4g}, {:.4g}) m. The load may be too fast or "
+                    "too large for this lattice and law; try a slower load, a finer lattice or a smaller "
+                    "solver.safety",
+                    state_.parameter, state_.steps, breakdown.what, breakdown.position[0],
+                    breakdown.position[1], breakdown.position[2]));
   }
 
   Model& model_;
@@ -201,7 +205,8 @@ double stable_step(Model& model, const Constraints& constraints, std::span<const
   return 2 / std::sqrt(largest);
 }
 
-State march(Model& model, Constraints& constraints, const VelocityVerletSettings& settings, Observer& observer) {
+State march(Model& model, Constraints& constraints, const VelocityVerletSettings& settings,
+            Observer& observer) {
   return Verlet(model, constraints, settings, observer).run();
 }
 

@@ -7,19 +7,21 @@
 namespace riven {
 
 struct VelocityVerletSettings {
-  double until = 0;             // s
-  double every = 0;             // time between output states (s)
-  double history_every = 0;     // time between history rows (s)
-  std::optional<double> step;   // s; default: safety times the stable step, estimated again as the body deforms
+  double until = 0;          // s
+  double every = 0;          // time between output states (s)
+  double history_every = 0;  // time between history rows (s)
+  std::optional<double>
+      step;  // s; default: safety times the stable step, estimated again as the body deforms
   double safety = 0.8;
 };
 
 /// Largest stable step of Verlet's method (s) in a state, from the bound of the tangent's rows.
 double stable_step(Model& model, const Constraints& constraints, std::span<const double> u);
 
-/// Marches a model through time from rest by velocity Verlet (peridynamics theory, section 8). Prescribed entries move as
-/// they are told; they carry no inertia of their own in the energy balance.
-/// Throws InputError for a given step above the stable one, SolverFailure when the run blows up.
-State march(Model& model, Constraints& constraints, const VelocityVerletSettings& settings, Observer& observer);
+/// Marches a model through time from rest by velocity Verlet (peridynamics theory, section 8). Prescribed
+/// entries move as they are told; they carry no inertia of their own in the energy balance. Throws InputError
+/// for a given step above the stable one, SolverFailure when the run blows up.
+State march(Model& model, Constraints& constraints, const VelocityVerletSettings& settings,
+            Observer& observer);
 
 }  // namespace riven

@@ -11,7 +11,7 @@ class WorkIntegral {
  public:
   enum class Rule {
     trapezoidal,  // the force is linear in between: as exact as Verlet's steps are
-    parabolic,    // the force is a parabola of the parameter through the last three states: for long load steps
+    parabolic,  // the force is a parabola of the parameter through the last three states: for long load steps
   };
   explicit WorkIntegral(Rule rule) : rule_(rule) {}
 

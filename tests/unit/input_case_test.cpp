@@ -320,9 +320,11 @@ TEST(WrongInput, FilesThatAreNoCases) {
   std::filesystem::remove_all(folder);
 }
 
-// A rectangular hole of a sheet goes through its whole thickness; with a finite third size no bond would be cut.
+// A rectangular hole of a sheet goes through its whole thickness; with a finite third size no bond would be
+// cut.
 TEST(CaseReader, BoxesOfASheetAreEndlessAcrossIt) {
-  const Case c = parse_case(std::string(static_case) + "\n[[hole]]\nbox = { size = [\"1 mm\", \"2 mm\"] }\n", "case.toml");
+  const Case c = parse_case(std::string(static_case) + "\n[[hole]]\nbox = { size = [\"1 mm\", \"2 mm\"] }\n",
+                            "case.toml");
   const Box& box = std::get<Box>(c.holes.back().shape);
   EXPECT_DOUBLE_EQ(box.half_size[0], 0.0005);
   EXPECT_DOUBLE_EQ(box.half_size[1], 0.001);
