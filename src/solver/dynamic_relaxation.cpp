@@ -13,6 +13,7 @@ namespace riven {
 namespace {
 
 constexpr int kMostCuts = 8;             // a step may be halved this often before the run gives up
+constexpr int kMostRetreats = 6;        // within a load step, before it is halved
 constexpr double kFirstStep = 0.01;      // of the increment: tells the direction in which the body deforms
 constexpr double kLargestDamping = 1.9;  // below the critical 2 of eq. (11)
 constexpr int kProgressEvery = 50;       // iterations
@@ -122,10 +123,17 @@ class Relaxation {
   std::optional<std::string> equilibrate(double target) {
     std::fill(velocity_.begin(), velocity_.end(), 0.0);
     constraints_.apply(state_.u);
-    set_masses();
+    set_masses(1);
+    long moves = 0;  // since the start or the last retreat
+    int retreats = 0;
     for (long iteration = 0; iteration < settings_.max_iterations; ++iteration) {
       std::swap(force_, old_force_);
-      if (const auto breakdown = evaluate()) return describe(*breakdown);
+      if (const auto breakdown = evaluate()) {
+        if (moves == 0 || retreats == kMostRetreats) return describe(*breakdown);
+        retreat(++retreats);
+        moves = 0;
+        continue;
+      }
       const Sums sums = sweep();
       const double residual = std::sqrt(sums.force2) / constraints_.reaction_norm();
       if (!std::isfinite(sums.force2)) return "the forces are no longer finite";
@@ -135,7 +143,7 @@ class Relaxation {
         const auto breakdown = model_.inspect(state_.u);
         return breakdown ? std::make_optional(describe(*breakdown)) : std::nullopt;
       }
-      advance(damping(sums), iteration == 0);
+      advance(damping(sums), moves++ == 0);
     }
     return fmt::format("not converged in the {} iterations of solver.max_iterations",
                        settings_.max_iterations);
@@ -148,10 +156,21 @@ class Relaxation {
     return std::nullopt;
   }
 
-  void set_masses() {
+  /// `caution`: factor on masses that would just do in the present state.
+  void set_masses(double caution) {
     model_.stiffness_bound(state_.u, mass_);
     constraints_.fold(mass_);
-    for (double& mass : mass_) mass *= 0.25;
+    for (double& mass : mass_) mass *= 0.25 * caution;
+  }
+
+  /// The motion has run past what the model can answer to, where its stiffness grows without bound: goes back by one
+  /// iteration, to rest, with masses for the stiffness there and beyond.
+  void retreat(int times) {
+    for (std::size_t i = 0; i < n_; ++i)
+      if (mass_[i] != 0) state_.u[i] -= velocity_[i];
+    constraints_.apply(state_.u);
+    std::fill(velocity_.begin(), velocity_.end(), 0.0);
+    set_masses(std::pow(2.0, times));
   }
 
   /// Norm of the free force and the quotient for the damping. Slaves and padding hold zero force.

@@ -105,7 +105,7 @@ TEST(DynamicRelaxation, GivesUpOnAnImpossibleLoad) {
 
 TEST(DynamicRelaxation, StretchesAUniformSheetExactly) {
   // Mirror layers and weights are exact for homogeneous states, so the first residual is the last.
-  const LawCase& law = unit_laws()[1];
+  const LawCase law = unit_laws()[1];
   Membrane membrane(make_lattice_body(sheet(16, 12, 0.05, all_edges())), law.material(), kStabilisation);
   Constraints constraints = constrain(membrane, planar());
   Log log;
