@@ -228,7 +228,8 @@ Format describe(SolverInput& s) {
                    .applies(relaxed)
                    .otherwise("0.1"),
                Key{"tolerance", Quantity{&s.tolerance, dimension::none, fraction},
-                   "Largest free force over the reaction at a state."}
+                   "L2 norm of the free forces over that of the constraint forces, at which a state has "
+                   "converged."}
                    .applies(relaxed)
                    .otherwise("1e-5"),
                Key{"max_iterations", Integer{&s.max_iterations, 1},
@@ -272,7 +273,9 @@ Format describe(ProbeInput& p, const Case& c) {
                    Key{"kind", Text{&p.kind, {"reaction", "nominal-stress", "displacement", "stretch"}},
                        "What it measures."}
                        .required(),
-                   Key{"on", Part{&p.on}, "The edge or set whose force is summed."}
+                   Key{"on", Part{&p.on},
+                       "The edge or set whose external force is summed; the inertia of points that a load "
+                       "moves is not in it."}
                        .applies(kinds({"reaction", "nominal-stress"}))
                        .required(),
                    Key{"at", Place{&p.position}, "A place in the undeformed body."}

@@ -47,6 +47,9 @@ class Model {
   /// Upper bound of the sum of |tangent stiffness| over a row (N/m), for stable steps and fictitious masses.
   virtual void stiffness_bound(std::span<const double> u, std::span<double> bound) = 0;
 
+  /// Distance of neighbouring points (m): displacements far below it mean nothing.
+  [[nodiscard]] virtual double spacing() const = 0;
+
   /// What a force balance does not show: folded points, for example. Asked at converged and output states.
   [[nodiscard]] virtual std::optional<Breakdown> inspect(std::span<const double> u) = 0;
 

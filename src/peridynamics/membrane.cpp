@@ -365,9 +365,10 @@ void Membrane::add_far_bound(const MembraneBond& bond, double row, std::span<dou
   const auto inclusion = static_cast<std::size_t>(bond.inclusion);
   const std::size_t dof = inclusion_dof(inclusion);
   const double lever = bond.arm.norm() / inclusions_[inclusion].gyration;
-  bound[dof] += row;
-  bound[dof + 1] += row;
-  bound[dof + 2] += row * std::max(lever, lever * lever);
+  // The bond's end moves by the translation and by the lever times the rotation's entry: each row has both.
+  bound[dof] += row * (1 + lever);
+  bound[dof + 1] += row * (1 + lever);
+  bound[dof + 2] += row * lever * (1 + lever);
 }
 
 }  // namespace riven

@@ -47,6 +47,7 @@ class Membrane final : public Model {
   [[nodiscard]] double strain_energy(std::span<const double> u) override;
   void mass(std::span<double> mass) const override;
   void stiffness_bound(std::span<const double> u, std::span<double> bound) override;
+  [[nodiscard]] double spacing() const override { return body_.lattice.spacing(); }
   [[nodiscard]] std::optional<Breakdown> inspect(std::span<const double> u) override;
   void move(std::span<double> u, const std::array<std::array<double, 3>, 3>& gradient,
             const Point& shift) const override;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "load/mirror.hpp"
 #include "peridynamics/membrane.hpp"
@@ -33,6 +34,44 @@ Material make_material(const MaterialInput& in) {
   return material;
 }
 
+/// Points of a shape's outline, close enough to tell whether it lies within a convex body.
+std::vector<Point> outline(const Shape& shape) {
+  std::vector<Point> points;
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    for (const double x : {-1.0, 1.0})
+      for (const double y : {-1.0, 1.0})
+        points.push_back(
+            {box->center[0] + x * box->half_size[0], box->center[1] + y * box->half_size[1], box->center[2]});
+    return points;
+  }
+  const auto* disc = std::get_if<Disc>(&shape);
+  const Point& center = disc != nullptr ? disc->center : std::get<Ball>(shape).center;
+  const double radius = disc != nullptr ? disc->radius : std::get<Ball>(shape).radius;
+  for (int n = 0; n < 360; ++n) {
+    const double angle = n * std::numbers::pi / 180;
+    points.push_back({center[0] + radius * std::cos(angle), center[1] + radius * std::sin(angle), center[2]});
+  }
+  return points;
+}
+
+/// A defect that the body does not hold is a slip of a sign or a unit.
+void check_places(const Case& in, double touch) {
+  const Shape& body = in.geometry.lattice.shape;
+  for (const HoleInput& hole : in.holes)
+    if (!overlap(hole.shape, body, touch))
+      throw InputError(hole.at, "hole: lies outside of the body; expected one that cuts it");
+  for (const CrackInput& crack : in.cracks)
+    if (!chord(body, crack.segment.a, crack.segment.b, touch))
+      throw InputError(crack.at, "crack: lies outside of the body; expected one that cuts it");
+  for (const InclusionInput& inclusion : in.inclusions)
+    for (const Point& point : outline(inclusion.shape))
+      if (signed_distance(body, point) > touch)
+        throw InputError(inclusion.at,
+                         fmt::format("inclusion: reaches out of the body at ({:.4g}, {:.4g}) m; expected one "
+                                     "inside it",
+                                     point[0], point[1]));
+}
+
 Defects make_defects(const Case& in) {
   struct Placed {
     const Shape& shape;
@@ -50,6 +89,7 @@ Defects make_defects(const Case& in) {
   }
   for (const CrackInput& crack : in.cracks) defects.cracks.push_back(crack.segment);
   const double touch = 1e-6 * in.geometry.lattice.spacing;
+  check_places(in, touch);
   for (std::size_t a = 0; a < placed.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)
       if (overlap(placed[a].shape, placed[b].shape, touch))

@@ -16,12 +16,6 @@ namespace riven {
 
 namespace {
 
-constexpr double kSameState = 1e-6;  // relative
-
-bool same_state(double a, double b) {
-  return std::abs(a - b) <= kSameState * std::max(std::abs(a), std::abs(b));
-}
-
 double last_state(const Case& input) {
   return input.solver.method == "verlet" ? input.solver.until : input.solver.stretch.back();
 }
@@ -142,6 +136,10 @@ double load_steps(const SolverInput& solver) {
 
 }  // namespace
 
+bool same_state(double a, double b) {
+  return std::abs(a - b) <= 1e-6 * std::max(std::abs(a), std::abs(b));
+}
+
 bool reaches(const Case& input, double state) {
   const SolverInput& solver = input.solver;
   if (solver.method != "verlet")
@@ -149,7 +147,7 @@ bool reaches(const Case& input, double state) {
                        [&](double s) { return same_state(s, state); });
   const double every = input.output.every.value_or(solver.until), count = std::round(state / every);
   const bool on_schedule =
-      count >= 0 && state <= solver.until * (1 + kSameState) && same_state(state, count * every);
+      count >= 0 && state <= solver.until * (1 + 1e-6) && same_state(state, count * every);
   return on_schedule || same_state(state, solver.until);
 }
 

@@ -8,6 +8,9 @@
 
 namespace riven {
 
+/// Whether two stretches or times mean the same output state.
+bool same_state(double a, double b);
+
 /// Whether a run of this case has an output state there: a stretch, or a time (s).
 bool reaches(const Case& input, double state);
 

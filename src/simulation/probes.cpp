@@ -80,7 +80,10 @@ void Probes::add_columns(const ProbeInput& probe) {
 
 std::vector<double> Probes::evaluate(const State& state, const Constraints& constraints) const {
   const auto dimension = static_cast<std::size_t>(simulation_.body->lattice.dimension());
-  const DisplacementField field(simulation_, state.u);
+  std::optional<DisplacementField> field;
+  for (const ProbeInput& probe : simulation_.input.probes)
+    if (!field && (probe.kind == "displacement" || probe.kind == "stretch"))
+      field.emplace(simulation_, state.u);
   std::vector<double> values;
   const auto add = [&](const Point& vector, double divisor) {
     for (std::size_t a = 0; a < dimension; ++a) values.push_back(vector[a] / divisor);
@@ -95,10 +98,10 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
       const std::array<double, 9> stress = mean_stress(simulation_.set(probe.on.text), state.u);
       values.insert(values.end(), {stress[0], stress[1], stress[3], stress[4]});
     }
-    if (probe.kind == "displacement") add(field.at(*probe.position, probe), 1);
+    if (probe.kind == "displacement") add(field->at(*probe.position, probe), 1);
     if (probe.kind == "stretch")
-      values.push_back(distance_between(moved(*probe.from, field.at(*probe.from, probe)),
-                                        moved(*probe.to, field.at(*probe.to, probe))) /
+      values.push_back(distance_between(moved(*probe.from, field->at(*probe.from, probe)),
+                                        moved(*probe.to, field->at(*probe.to, probe))) /
                        distance_between(*probe.from, *probe.to));
   }
   return values;

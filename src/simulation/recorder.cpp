@@ -20,6 +20,7 @@ Recorder::Recorder(const Simulation& simulation, const Probes& probes, const Res
       collection_(folder.collection()) {}
 
 void Recorder::progressed(const SolverProgress& progress) {
+  evaluations_ = progress.evaluations;
   if (interrupt_requested()) throw Interrupted();
   ProgressState state;
   state.parameter = simulation_.parameter;
@@ -38,6 +39,7 @@ void Recorder::progressed(const SolverProgress& progress) {
 
 void Recorder::reached(const State& state, const Constraints& constraints, bool output) {
   last_ = state;
+  evaluations_ = state.evaluations;
   last_written_ = false;
   const std::vector<double> values = probes_.evaluate(state, constraints);
   metrics_ = probes_.metrics(values);

@@ -32,6 +32,8 @@ class Recorder final : public Observer {
   /// What has been reached, for summary.json; `status` and timing are the caller's.
   [[nodiscard]] Summary summary() const;
   [[nodiscard]] const State& last() const { return last_; }
+  /// Force evaluations so far, those of an unfinished step included.
+  [[nodiscard]] long evaluations() const { return evaluations_; }
 
  private:
   void write_fields();
@@ -44,6 +46,7 @@ class Recorder final : public Observer {
   HistoryWriter history_;
   Collection collection_;
   State last_;
+  long evaluations_ = 0;
   bool last_written_ = true;
   std::vector<SummaryState> states_;
   Metrics metrics_;  // of the last state

@@ -93,9 +93,9 @@ Summary summary_of(const Recorder& recorder, const Simulation& simulation, RunSt
   summary.status = status;
   summary.case_name = options.case_name;
   summary.timing.wall_s = wall_s;
-  if (simulation.parameter == Parameter::stretch) summary.timing.iterations = recorder.last().evaluations;
+  if (simulation.parameter == Parameter::stretch) summary.timing.iterations = recorder.evaluations();
   summary.timing.bond_evaluations_per_second =
-      static_cast<double>(recorder.last().evaluations) * static_cast<double>(summary.timing.bonds) / wall_s;
+      static_cast<double>(recorder.evaluations()) * static_cast<double>(summary.timing.bonds) / wall_s;
   summary.memory_peak_bytes = peak_memory_bytes();
   return summary;
 }
@@ -133,7 +133,7 @@ Summary run_case(const Case& input, const RunOptions& options) {
   try_to([&] { write_summary(folder.summary(), summary); });
   summary.status = status;
   log.info(fmt::format("{} in {:.1f} s, {} force evaluations, {:.0f} million bonds/s, energy balance {:.1e}",
-                       name(status), summary.timing.wall_s, recorder.last().evaluations,
+                       name(status), summary.timing.wall_s, recorder.evaluations(),
                        1e-6 * summary.timing.bond_evaluations_per_second, summary.energy.balance_error));
   if (status == RunStatus::finished)
     log.info(fmt::format("results: {}/ (fields.pvd opens in ParaView; history.csv, summary.json)",

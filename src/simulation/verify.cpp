@@ -1,5 +1,7 @@
 #include "simulation/verify.hpp"
 
+#include "simulation/preflight.hpp"
+
 #include <fmt/format.h>
 
 #include <array>
@@ -11,12 +13,6 @@
 namespace riven {
 
 namespace {
-
-constexpr double kSameState = 1e-6;  // relative
-
-bool same_state(double a, double b) {
-  return std::abs(a - b) <= kSameState * std::max(std::abs(a), std::abs(b));
-}
 
 /// Three digits; what is below rounding is nothing.
 std::string percent(double fraction) {

@@ -12,9 +12,14 @@ namespace riven {
 
 namespace {
 
-constexpr int kMostCuts = 8;             // a step may be halved this often before the run gives up
-constexpr int kMostRetreats = 6;        // within a load step, before it is halved
-constexpr double kFirstStep = 0.01;      // of the increment: tells the direction in which the body deforms
+constexpr int kMostCuts = 8;  // a step may be halved this often before the run gives up
+constexpr double kLeastStrain =
+    1e-6;  // reactions below those of such strains set no scale: a body that nothing loads
+constexpr int kMostRetreats = 6;     // within a load step, before it is halved
+constexpr double kFirstStep = 0.01;  // of the increment: tells the direction in which the body deforms
+constexpr double kJump =
+    0.02;  // of the energy; the quadrature of the work errs by less after the first steps
+constexpr long kStepsOfPoorBalance = 3;
 constexpr double kLargestDamping = 1.9;  // below the critical 2 of eq. (11)
 constexpr int kProgressEvery = 50;       // iterations
 
@@ -57,10 +62,12 @@ class Relaxation {
     while (direction * (target - state_.parameter) > 1e-12 * std::abs(target)) {
       const double left = std::abs(target - state_.parameter);
       // Equal steps to the target, none of them a crumb.
-      const double step = state_.steps == 0 ? std::min(left, kFirstStep * increment)
-                                            : left / std::ceil(left / increment - 1e-9);
+      const double count = std::ceil(left / increment - 1e-9);
+      const double step = state_.steps == 0 ? std::min(left, kFirstStep * increment) : left / count;
       const bool last = step > left * (1 - 1e-9);
-      const auto failure = load_step(last ? target : state_.parameter + direction * step);
+      const double next =
+          state_.steps == 0 ? state_.parameter + direction * step : target - direction * (count - 1) * step;
+      const auto failure = load_step(last ? target : next);
       if (!failure) {
         observer_.reached(state_, constraints_, last);
         if (cuts > 0 && ++good_steps_ >= 4) {
@@ -73,8 +80,8 @@ class Relaxation {
       if (++cuts > kMostCuts) give_up(*failure);
       good_steps_ = 0;
       increment = 0.5 * (state_.steps == 0 ? increment : step);
-      observer_.remarked(fmt::format("load step to {:.6g} failed ({}); going on with steps of {:.3g}",
-                                     state_.parameter + direction * step, *failure, increment));
+      observer_.remarked(fmt::format("load step to {:.6g} failed ({}); going on with steps of {:.3g}", next,
+                                     *failure, increment));
     }
   }
 
@@ -135,11 +142,12 @@ class Relaxation {
         continue;
       }
       const Sums sums = sweep();
-      const double residual = std::sqrt(sums.force2) / constraints_.reaction_norm();
       if (!std::isfinite(sums.force2)) return "the forces are no longer finite";
+      const double residual =
+          std::sqrt(sums.force2) / std::max(constraints_.reaction_norm(), least_reaction_);
       if (iteration % kProgressEvery == 0 || residual <= settings_.tolerance)
         report(target, iteration, residual);
-      if (std::sqrt(sums.force2) <= settings_.tolerance * constraints_.reaction_norm()) {
+      if (residual <= settings_.tolerance) {
         const auto breakdown = model_.inspect(state_.u);
         return breakdown ? std::make_optional(describe(*breakdown)) : std::nullopt;
       }
@@ -160,11 +168,13 @@ class Relaxation {
   void set_masses(double caution) {
     model_.stiffness_bound(state_.u, mass_);
     constraints_.fold(mass_);
+    const double rows2 = ordered_sum_of(n_, [&](std::size_t i) { return mass_[i] * mass_[i]; });
+    least_reaction_ = kLeastStrain * model_.spacing() * std::sqrt(rows2);
     for (double& mass : mass_) mass *= 0.25 * caution;
   }
 
-  /// The motion has run past what the model can answer to, where its stiffness grows without bound: goes back by one
-  /// iteration, to rest, with masses for the stiffness there and beyond.
+  /// The motion has run past what the model can answer to, where its stiffness grows without bound: goes back
+  /// by one iteration, to rest, with masses for the stiffness there and beyond.
   void retreat(int times) {
     for (std::size_t i = 0; i < n_; ++i)
       if (mass_[i] != 0) state_.u[i] -= velocity_[i];
@@ -206,11 +216,22 @@ class Relaxation {
     constraints_.apply(state_.u);
   }
 
+  /// Energies of the new state. A body that has jumped to another equilibrium lost energy that no load took.
   void balance() {
     EnergyBalance& energy = state_.energy;
+    const double before = energy.strain - energy.external_work;
     energy.strain = model_.strain_energy(state_.u);
     energy.external_work += work_.since_last_call(constraints_, state_.parameter);
-    energy.largest = std::max({energy.largest, std::abs(energy.strain), std::abs(energy.external_work)});
+    // Energies below that of the least strain are rounding, and so is their balance.
+    energy.largest = std::max({energy.largest, std::abs(energy.strain), std::abs(energy.external_work),
+                               kLeastStrain * model_.spacing() * least_reaction_});
+    const double lost = before - (energy.strain - energy.external_work);
+    if (state_.steps > kStepsOfPoorBalance && lost > kJump * energy.largest)
+      observer_.remarked(
+          fmt::format("in the load step to {:.6g} the body lost {:.2g} % of its energy: it has jumped to "
+                      "another equilibrium (snapping, "
+                      "wrinkling), and what it does in between depends on inertia, which statics leaves out",
+                      state_.parameter, 100 * lost / energy.largest));
   }
 
   void report(double target, long iteration, double residual) const {
@@ -222,6 +243,7 @@ class Relaxation {
                           .step = state_.steps + 1,
                           .steps = state_.steps + std::max(1L, std::lround(std::ceil(left - 1e-9))),
                           .iteration = iteration,
+                          .evaluations = state_.evaluations,
                           .residual = residual,
                           .tolerance = settings_.tolerance});
   }
@@ -240,6 +262,7 @@ class Relaxation {
   WorkIntegral work_{WorkIntegral::Rule::parabolic};
   std::vector<double> force_, old_force_, velocity_, mass_;
   std::vector<double> before_;  // state one load step back
+  double least_reaction_ = 0;   // N, scale of the residual where there is next to no reaction
   double last_change_ = 0;      // of the parameter in the last load step
   int good_steps_ = 0;          // since the last cut
 };

@@ -10,7 +10,8 @@ struct DynamicRelaxationSettings {
   std::vector<double> targets;  // parameters of the output states, in the order they are reached
   double start = 1;             // parameter of the undeformed body
   double increment = 0.1;       // largest load step
-  double tolerance = 1e-5;      // L2 norm of the free force over that of the reaction
+  double tolerance = 1e-5;  // L2 norm of the free force over that of the reaction; a reaction below that of
+                            // strains of about 1e-6 counts as that
   long max_iterations = 20000;  // of a load step; then it is cut
 };
 

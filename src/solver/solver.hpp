@@ -40,8 +40,9 @@ struct SolverProgress {
   double begin = 0, end = 0;  // of the whole run
   long step = 0;              // of `steps`, as far as one can tell (statics); taken (dynamics)
   long steps = 0;
-  long iteration = 0;   // within the step
-  double residual = 0;  // free force / reaction; 0 in dynamics
+  long iteration = 0;    // within the step
+  long evaluations = 0;  // of the force, so far
+  double residual = 0;   // free force / reaction; 0 in dynamics
   double tolerance = 0;
 };
 

@@ -63,29 +63,35 @@ class Verlet {
       const double event = std::min(outputs.next(), history.next());
       advance_to(event);
       balance();
-      check();
+      check_energy();
       const bool output = outputs.due(event), row = history.due(event);
+      if (output) check_points();
       if (output || row) observer_.reached(state_, constraints_, output);
     }
     return std::move(state_);
   }
 
  private:
-  /// Steps of equal length that end at `event` exactly.
+  /// Steps of equal length that end at `event` exactly. Every so many steps the stable step is estimated
+  /// again and the body looked at.
   void advance_to(double event) {
     while (state_.parameter < event) {
       const double left = event - state_.parameter;
       const auto steps = std::max(1L, static_cast<long>(std::ceil(left / step_ - 1e-9)));
-      const long now = std::min(steps, kStepsBetweenEstimates);
+      const long now = std::min(steps, next_estimate_ - state_.steps);
       const double dt = left / static_cast<double>(steps);
       const double begin = state_.parameter;
       for (long s = 1; s <= now; ++s) step(dt, s == steps ? event : begin + static_cast<double>(s) * dt);
+      if (state_.steps < next_estimate_) continue;
       observer_.progressed({.parameter = state_.parameter,
                             .reached = state_.parameter,
                             .end = settings_.until,
-                            .step = state_.steps});
+                            .step = state_.steps,
+                            .evaluations = state_.evaluations});
       estimate_step();
-      if (now < steps) check_energy_now();
+      balance();
+      check_energy();
+      check_points();
     }
   }
 
@@ -118,6 +124,7 @@ class Verlet {
   }
 
   void estimate_step() {
+    next_estimate_ = state_.steps + kStepsBetweenEstimates;
     const double limit = stable_step(model_, constraints_, state_.u);
     if (!settings_.step) {
       step_ = settings_.safety * limit;
@@ -155,13 +162,11 @@ class Verlet {
         std::max({energy.largest, energy.kinetic, std::abs(energy.strain), std::abs(energy.external_work)});
   }
 
-  void check_energy_now() {
-    balance();
-    check();
+  void check_points() {
+    if (const auto breakdown = model_.inspect(state_.u)) fail(*breakdown);
   }
 
-  void check() {
-    if (const auto breakdown = model_.inspect(state_.u)) fail(*breakdown);
+  void check_energy() const {
     const double error = state_.energy.error();
     if (std::abs(error) <= kRunaway || state_.energy.largest <= rounding_energy()) return;
     throw SolverFailure(
@@ -189,6 +194,7 @@ class Verlet {
   WorkIntegral work_{WorkIntegral::Rule::trapezoidal};
   std::vector<double> force_, mass_;  // mass 0 where nothing is free to move
   double step_ = 0;
+  long next_estimate_ = 0;  // number of the step after which the stable step is estimated again
   double start_energy_ = 0;
 };
 

@@ -115,5 +115,32 @@ TEST(DynamicRelaxation, StretchesAUniformSheetExactly) {
   EXPECT_EQ(state.evaluations, state.steps);
 }
 
+// A body that nothing loads has no reaction to compare with: rest must count as equilibrium all the same.
+TEST(DynamicRelaxation, LeavesABodyWithoutLoadAtRest) {
+  const FaceLoads still = edges([](double) { return Eigen::Matrix2d::Identity(); }, all_edges(), false);
+  Problem problem(unit_laws()[0], still);
+  const State state = problem.solve({.targets = {1.1, 1.3}, .max_iterations = 200});
+  EXPECT_LE(largest(state.u), 1e-15);
+  EXPECT_LE(std::abs(state.energy.error()), 1e-3);
+  EXPECT_TRUE(problem.log.remarks.empty());
+}
+
+// One edge that moves takes a free sheet with it as a rigid body: again there is no reaction.
+TEST(DynamicRelaxation, CarriesAFreeSheetWithOneEdge) {
+  FaceLoads loads;
+  loads[0] = FaceLoad{.displacement = {[](const Point&, double p) { return p - 1; },
+                                       [](const Point&, double) { return 0.0; }},
+                      .load = 0};
+  Problem problem(unit_laws()[0], loads, Faces(0b0001));
+  const State state = problem.solve({.targets = {1.2}});
+  // Converged to forces of strains of 1e-11 in each bond, which add up along the sheet as in a
+  // cantilever: 1.3e-8 at its end.
+  const std::size_t size = problem.membrane.body().lattice.size();
+  for (const std::size_t i : problem.membrane.body().points) {
+    EXPECT_NEAR(state.u[i], 0.2, 1e-7);
+    EXPECT_NEAR(state.u[size + i], 0, 1e-7);
+  }
+}
+
 }  // namespace
 }  // namespace riven::testing
