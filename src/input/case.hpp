@@ -38,7 +38,6 @@ struct CrackInput {  // [[crack]]
 };
 
 struct InclusionInput {  // [[inclusion]]: rigid and bonded to the body
-  std::string name;      // default inclusion-1, inclusion-2, ...
   Shape shape;
   std::string motion = "free";  // "free": moves with the body around it; "fixed"
   Location at;

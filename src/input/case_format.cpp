@@ -94,21 +94,17 @@ Format describe(CrackInput& crack, const Case& c) {
           }};
 }
 
-Format describe(InclusionInput& inclusion, const Case& c, std::size_t index) {
+Format describe(InclusionInput& inclusion, const Case& c) {
   const auto shape = std::make_shared<std::optional<Shape>>(inclusion.shape);
-  std::vector<Key> keys = {
-      Key{"name", Text{&inclusion.name}, "Its name; inclusion-1, inclusion-2, ... unless given."},
-      Key{"motion", Text{&inclusion.motion, {"free", "fixed"}},
-          "Whether it moves with the body around it or stays."}
-          .otherwise("\"free\"")};
+  std::vector<Key> keys = {Key{"motion", Text{&inclusion.motion, {"free", "fixed"}},
+                               "Whether it moves with the body around it or stays."}
+                               .otherwise("\"free\"")};
   for (Key& key : shape_keys(*shape)) keys.push_back(std::move(key));
   return {.doc = "A rigid inclusion, bonded to the body.",
           .at = &inclusion.at,
           .keys = std::move(keys),
           .groups = {{{"disc", "box", "ball"}}},
-          .finish = [shape, &inclusion, &c, index](const Check& check) {
-            if (inclusion.name.empty()) inclusion.name = fmt::format("inclusion-{}", index + 1);
-            check_new_name(c.inclusions, inclusion, check);
+          .finish = [shape, &inclusion, &c](const Check& check) {
             inclusion.shape = shape->value();
             check_shape(inclusion.shape, c, check);
           }};
@@ -416,7 +412,7 @@ Format describe(Case& c) {
                Key{"crack", tables(c.cracks, [&c](CrackInput& k, std::size_t) { return describe(k, c); }),
                    "Cracks."},
                Key{"inclusion",
-                   tables(c.inclusions, [&c](InclusionInput& i, std::size_t n) { return describe(i, c, n); }),
+                   tables(c.inclusions, [&c](InclusionInput& i, std::size_t) { return describe(i, c); }),
                    "Rigid inclusions."},
                Key{"set", named_tables(c.sets, [&c](SetInput& s) { return describe(s, c); }),
                    "Sets of points."},

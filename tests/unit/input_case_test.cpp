@@ -59,8 +59,7 @@ TEST(CaseReader, ReadsARunInTime) {
   EXPECT_NEAR(std::get<Box>(c.holes.at(1).shape).center[0], 0.071, 1e-15);
   EXPECT_NEAR(std::get<Box>(c.holes.at(1).shape).center[1], 0.002, 1e-15);
   EXPECT_EQ(c.cracks.at(0).segment.b, (Point{0.01, 0, 0}));
-  EXPECT_EQ(c.inclusions.at(0).name, "inclusion-1");
-  EXPECT_EQ(c.inclusions[0].motion, "fixed");
+  EXPECT_EQ(c.inclusions.at(0).motion, "fixed");
   EXPECT_EQ(c.inclusions[1].motion, "free");
   EXPECT_DOUBLE_EQ(c.materials.at(0).density, 1100);
   EXPECT_EQ(*c.materials[0].c30, 0);
@@ -271,10 +270,8 @@ INSTANTIATE_TEST_SUITE_P(
               "expect.0.file: missing"},
         Wrong{"solver.stretch=[1.5]", "solver.stretch", "47", "expected \"path.to.key=value\""},
         Wrong{"[[hole]]", "[[crack]]\nfrom = [0, 0]\nto = [0, 0]\n[[hole]]", "9", "same place as from"},
-        Wrong{"[[hole]]",
-              "[[inclusion]]\nname = 'a'\ndisc = {radius = '1 mm'}\n[[inclusion]]\nname = 'a'\ndisc = "
-              "{radius = '1 mm'}\n[[hole]]",
-              "11", "another one at case.toml:7:1"}));
+        Wrong{"[[hole]]", "[[inclusion]]\nname = 'a'\ndisc = {radius = '1 mm'}\n[[hole]]", "8",
+              "unknown key"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Toml, WrongInput,

@@ -77,7 +77,6 @@ disc = { radius = "5 mm", center = ["30 mm", 0] }
 motion = "fixed"
 
 [[inclusion]]
-name = "grain"
 disc = { radius = "5 mm", center = ["80 mm", 0] }
 
 [set.ends]
