@@ -274,6 +274,10 @@ Format describe(ProbeInput& p, const Case& c) {
                        "moves is not in it."}
                        .applies(kinds({"reaction", "nominal-stress"}))
                        .required(),
+                   Key{"component", Text{&p.component, {"x", "y", "z"}},
+                       "Only this component; the metric then has the probe's own name. Otherwise all, as "
+                       "name_x, name_y."}
+                       .applies(kinds({"reaction", "displacement"})),
                    Key{"at", Place{&p.position}, "A place in the undeformed body."}
                        .applies(kinds({"displacement"}))
                        .required(),

@@ -39,6 +39,11 @@ double distance_between(const Point& a, const Point& b) {
   return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
 }
 
+/// Axis of the one component that a probe asks for.
+std::size_t axis_of(const ProbeInput& probe) {
+  return static_cast<std::size_t>(probe.component[0] - 'x');
+}
+
 Point moved(const Point& x, const Point& u) {
   return {x[0] + u[0], x[1] + u[1], x[2] + u[2]};
 }
@@ -66,7 +71,14 @@ Probes::Probes(const Simulation& simulation) : simulation_(simulation) {
 
 void Probes::add_columns(const ProbeInput& probe) {
   const auto dimension = static_cast<std::size_t>(simulation_.body->lattice.dimension());
+  if (!probe.component.empty() && axis_of(probe) >= dimension)
+    throw InputError(probe.at, fmt::format("probe {}: component {}; expected one of the body's {}",
+                                           probe.name, probe.component, dimension));
   const auto vector = [&](const std::string& name, const std::string& unit) {
+    if (!probe.component.empty()) {
+      columns_.push_back({probe.name, unit});
+      return;
+    }
     for (std::size_t a = 0; a < dimension; ++a) columns_.push_back({name + "_" + kAxes[a], unit});
   };
   if (probe.kind == "reaction") vector(probe.name, "N");
@@ -85,10 +97,11 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
     if (!field && (probe.kind == "displacement" || probe.kind == "stretch"))
       field.emplace(simulation_, state.u);
   std::vector<double> values;
-  const auto add = [&](const Point& vector, double divisor) {
-    for (std::size_t a = 0; a < dimension; ++a) values.push_back(vector[a] / divisor);
-  };
   for (const ProbeInput& probe : simulation_.input.probes) {
+    const auto add = [&](const Point& vector, double divisor) {
+      for (std::size_t a = 0; a < dimension; ++a)
+        if (probe.component.empty() || axis_of(probe) == a) values.push_back(vector[a] / divisor);
+    };
     const auto face = Simulation::face(probe.on.text);
     if (probe.kind == "reaction")
       add(face ? constraints.reaction(*face) : reaction_of(simulation_.set(probe.on.text), constraints), 1);

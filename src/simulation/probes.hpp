@@ -12,7 +12,7 @@ namespace riven {
 /// The numbers that a case asks for, evaluated at a state. A probe "force" of kind reaction gives the metrics
 /// force_x, force_y; a nominal stress of a face gives its traction stress_x, stress_y, that of a set the mean
 /// tensor stress_xx, stress_xy, stress_yx, stress_yy; a displacement "crown" gives displacement_crown_x, _y;
-/// a stretch gives its own name.
+/// a stretch gives its own name, as does a probe of one component.
 class Probes {
  public:
   /// Throws InputError for a place outside of the body.
