@@ -40,7 +40,7 @@ fs::path cases_folder() {
 
 fs::path find_case(const std::string& target) {
   if (fs::exists(target)) return target;
-  const fs::path shipped = cases_folder() / (target + ".toml");
+  fs::path shipped = cases_folder() / (target + ".toml");
   if (fs::exists(shipped)) return shipped;
   std::vector<std::string> names;
   for (const fs::path& file : shipped_files()) names.push_back(case_name(file));

@@ -23,8 +23,11 @@ Lattice::Lattice(int dimension, std::array<int, 3> cells, double spacing, const 
 }
 
 std::size_t Lattice::index(const Cell& cell) const {
-  const auto row =
-      static_cast<std::size_t>((cell[2] + reach(2)) * (cells_[1] + 2 * reach(1)) + cell[1] + reach(1));
+  const auto along = [&](int axis) {
+    const int number = cell[static_cast<std::size_t>(axis)] + reach(axis);
+    return static_cast<std::size_t>(number);
+  };
+  const std::size_t row = along(2) * static_cast<std::size_t>(cells_[1] + 2 * reach(1)) + along(1);
   return static_cast<std::size_t>(static_cast<std::ptrdiff_t>(row_begin(row) + left_) + cell[0]);
 }
 
@@ -60,7 +63,7 @@ bool Lattice::stored(const Cell& cell) const {
 }
 
 std::ptrdiff_t Lattice::shift(const Cell& offset) const {
-  const auto rows_y = static_cast<std::ptrdiff_t>(cells_[1] + 2 * reach(1));
+  const std::ptrdiff_t rows_y = std::ptrdiff_t{cells_[1]} + std::ptrdiff_t{2} * reach(1);
   return (offset[2] * rows_y + offset[1]) * static_cast<std::ptrdiff_t>(row_) + offset[0];
 }
 

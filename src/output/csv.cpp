@@ -13,8 +13,8 @@ namespace {
 
 std::string_view trim(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
-  return first == text.npos ? std::string_view{}
-                            : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+  return first == std::string::npos ? std::string_view{}
+                                    : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
 /// Reads the quoted cell that starts at `at` and moves `at` behind its closing quote.
@@ -130,7 +130,7 @@ std::vector<double> CsvTable::numbers(std::size_t column) const {
 }
 
 std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"#") == text.npos) return text;
+  if (text.find_first_of(",\"#") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + '"';

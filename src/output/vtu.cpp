@@ -95,7 +95,7 @@ PointField read_field(const pugi::xml_node& node, std::size_t points) {
     expect_attribute(node, "format", "binary");
     std::string_view text = node.text().get();
     const auto first = text.find_first_not_of(" \t\r\n");
-    if (first == text.npos) throw std::runtime_error("it is empty");
+    if (first == std::string::npos) throw std::runtime_error("it is empty");
     text = text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
     const auto bytes = decode_vtk_array(text, count * sizeof(double));
     field.values.resize(count);

@@ -26,7 +26,7 @@ InvariantLaw make_law(const MaterialInput& in) {
 }
 
 Material make_material(const MaterialInput& in) {
-  const Material material{in.name, make_law(in), in.density};
+  Material material{in.name, make_law(in), in.density};
   if (!(shear_modulus(material.law) > 0))
     throw InputError(
         in.at, fmt::format("material.{}: the shear modulus is {:g} Pa; expected a law with a positive one",

@@ -183,12 +183,12 @@ std::vector<std::string> warnings(const Simulation& simulation) {
         "is usual",
         ratio));
   if (simulation.input.model.stabilisation < 1)
-    list.push_back(
+    list.emplace_back(
         "with a stabilisation below 1 rows of points fold over one another beside defects and under "
         "compression");
-  if (simulation.input.loads.empty()) list.push_back("there is no load: nothing will move");
+  if (simulation.input.loads.empty()) list.emplace_back("there is no load: nothing will move");
   if (simulation.input.probes.empty())
-    list.push_back("there is no probe: history.csv and the metrics will be empty");
+    list.emplace_back("there is no probe: history.csv and the metrics will be empty");
   if (jumps_at_start(simulation))
     list.push_back(fmt::format("the loads are not zero at {}: the body starts with a jump",
                                simulation.parameter == Parameter::time ? "time 0" : "stretch 1"));
@@ -202,7 +202,7 @@ std::vector<std::string> warnings(const Simulation& simulation) {
         near = near || signed_distance(inclusion, edge) < body.horizon;
       }
     if (near)
-      list.push_back(
+      list.emplace_back(
           "an inclusion is nearer than a horizon to an edge: the strip between is too thin for this lattice");
   }
   return list;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -38,9 +39,9 @@ double finite(const CsvTable& table, std::size_t row, std::size_t column) {
 
 ReferenceState& state_of(std::vector<ReferenceState>& states, std::optional<double> value) {
   // Rows of a state mostly stand together: look at the last one first.
-  for (auto state = states.rbegin(); state != states.rend(); ++state) {
-    if (state->value == value) return *state;
-  }
+  const auto found =
+      std::find_if(states.rbegin(), states.rend(), [&](const auto& s) { return s.value == value; });
+  if (found != states.rend()) return *found;
   return states.emplace_back(ReferenceState{value, {}});
 }
 
