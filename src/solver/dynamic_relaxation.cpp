@@ -15,7 +15,6 @@ namespace {
 constexpr int kMostCuts = 8;  // a step may be halved this often before the run gives up
 constexpr double kLeastStrain =
     1e-6;  // reactions below those of such strains set no scale: a body that nothing loads
-constexpr int kMostRetreats = 6;     // within a load step, before it is halved
 constexpr double kFirstStep = 0.01;  // of the increment: tells the direction in which the body deforms
 constexpr double kJump =
     0.02;  // of the energy; the quadrature of the work errs by less after the first steps
@@ -130,17 +129,10 @@ class Relaxation {
   std::optional<std::string> equilibrate(double target) {
     std::fill(velocity_.begin(), velocity_.end(), 0.0);
     constraints_.apply(state_.u);
-    set_masses(1);
-    long moves = 0;  // since the start or the last retreat
-    int retreats = 0;
+    set_masses();
     for (long iteration = 0; iteration < settings_.max_iterations; ++iteration) {
       std::swap(force_, old_force_);
-      if (const auto breakdown = evaluate()) {
-        if (moves == 0 || retreats == kMostRetreats) return describe(*breakdown);
-        retreat(++retreats);
-        moves = 0;
-        continue;
-      }
+      if (const auto breakdown = evaluate()) return describe(*breakdown);
       const Sums sums = sweep();
       if (!std::isfinite(sums.force2)) return "the forces are no longer finite";
       const double residual =
@@ -151,7 +143,7 @@ class Relaxation {
         const auto breakdown = model_.inspect(state_.u);
         return breakdown ? std::make_optional(describe(*breakdown)) : std::nullopt;
       }
-      advance(damping(sums), moves++ == 0);
+      advance(damping(sums), iteration == 0);
     }
     return fmt::format("not converged in the {} iterations of solver.max_iterations",
                        settings_.max_iterations);
@@ -164,23 +156,12 @@ class Relaxation {
     return std::nullopt;
   }
 
-  /// `caution`: factor on masses that would just do in the present state.
-  void set_masses(double caution) {
+  void set_masses() {
     model_.stiffness_bound(state_.u, mass_);
     constraints_.fold(mass_);
     const double rows2 = ordered_sum_of(n_, [&](std::size_t i) { return mass_[i] * mass_[i]; });
     least_reaction_ = kLeastStrain * model_.spacing() * std::sqrt(rows2);
-    for (double& mass : mass_) mass *= 0.25 * caution;
-  }
-
-  /// The motion has run past what the model can answer to, where its stiffness grows without bound: goes back
-  /// by one iteration, to rest, with masses for the stiffness there and beyond.
-  void retreat(int times) {
-    for (std::size_t i = 0; i < n_; ++i)
-      if (mass_[i] != 0) state_.u[i] -= velocity_[i];
-    constraints_.apply(state_.u);
-    std::fill(velocity_.begin(), velocity_.end(), 0.0);
-    set_masses(std::pow(2.0, times));
+    for (double& mass : mass_) mass *= 0.25;
   }
 
   /// Norm of the free force and the quotient for the damping. Slaves and padding hold zero force.
