@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "body/lattice_body.hpp"
 #include "peridynamics/membrane.hpp"
 
 namespace {
@@ -29,7 +30,7 @@ Membrane make_sheet(int points_per_side) {
 /// Every stored point stretched by half; ghosts included.
 std::vector<double> stretched(const Membrane& sheet) {
   std::vector<double> u(sheet.dofs(), 0.0);
-  const Lattice& lattice = sheet.body().lattice;
+  const Lattice& lattice = sheet.body().on_lattice()->lattice;
   lattice.for_each_cell([&](const Cell& cell, std::size_t i) {
     const Point x = lattice.position(cell);
     u[i] = 0.5 * x[0];

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <omp.h>
 
 #include <algorithm>
@@ -19,11 +20,10 @@ namespace riven::app {
 namespace {
 
 void print_sets(const Simulation& simulation) {
-  const Lattice& lattice = simulation.body->lattice;
   for (const PointSet& set : simulation.sets) {
     Point lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};
     for (const std::size_t i : set.points) {
-      const Point x = lattice.position(simulation.body->points[i]);
+      const Point x = simulation.body->position(simulation.body->points[i]);
       for (std::size_t a = 0; a < 3; ++a) {
         lower[a] = std::min(lower[a], x[a]);
         upper[a] = std::max(upper[a], x[a]);
@@ -36,15 +36,19 @@ void print_sets(const Simulation& simulation) {
 
 void print_model(const Simulation& simulation) {
   const Model& model = *simulation.model;
-  const LatticeBody& body = *simulation.body;
+  const Body& body = *simulation.body;
   double volume = 0;
   for (const std::size_t i : body.points) volume += body.volume[i];
+  const LatticeBonds* on = body.on_lattice();
+  const std::string cells = on == nullptr
+                                ? std::string("anywhere, mean spacing")
+                                : fmt::format("of {} cells, spacing", fmt::join(on->lattice.cells(), " x "));
+  fmt::print("# body: {} points {} {:.6g} m, volume {:.6g} m^3, {} ghost points behind loaded edges\n",
+             model.points(), cells, body.spacing, volume, body.ghosts.size());
   fmt::print(
-      "# body: {} points of {} x {} x {} cells, volume {:.6g} m^3, {} ghost points behind loaded edges\n",
-      model.points(), body.lattice.cells()[0], body.lattice.cells()[1], body.lattice.cells()[2], volume,
-      body.ghosts.size());
-  fmt::print("# bonds: {} directed, {} neighbours within the horizon of {:g} spacings\n", model.bonds(),
-             body.stencil.size(), body.horizon / body.lattice.spacing());
+      "# bonds: {} directed, {}, within the horizon of {:g} spacings\n", model.bonds(),
+      on == nullptr ? std::string("listed") : fmt::format("{} neighbours on the lattice", on->stencil.size()),
+      body.horizon / body.spacing);
   for (const std::string& line : model.describe()) fmt::print("# {}\n", line);
   print_sets(simulation);
 }

@@ -7,16 +7,14 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "body/bond_rules.hpp"
 
 namespace riven {
 
 namespace {
 
-// Rules of the peridynamics theory, 5a: half-covered cells are kept (3), rigid points reach a little beyond
-// the surface so that the bonds that cross it keep a length (4).
+// Rule 3 of the peridynamics theory, 5a: half-covered cells are kept.
 constexpr double kKeptFraction = 0.5 - 1e-9;
-constexpr double kRigidMargin = 0.15;
-constexpr double kTouch = 1e-9;  // of the spacing: below it, touching is no crossing
 
 struct Bounds {
   Point lower{}, upper{};
@@ -60,16 +58,18 @@ Lattice make_lattice(const LatticeBodyInput& in) {
 /// Kinds and volumes of the body's own cells.
 class CellFiller {
  public:
-  CellFiller(const LatticeBodyInput& in, LatticeBody& body) : in_(in), body_(body) {}
+  CellFiller(const LatticeBodyInput& in, const Lattice& lattice, Body& body)
+      : in_(in), lattice_(lattice), body_(body) {}
 
   void fill() {
+    const BondRules rules(body_);
     const double cell_volume = std::pow(in_.spacing, in_.dimension) * in_.thickness;
     std::vector<std::pair<Cell, double>> removed;  // cells below one half, with the volume they held
-    body_.lattice.for_each_cell([&](const Cell& cell, std::size_t i) {
-      if (!body_.lattice.inside(cell)) return;
-      const Point x = body_.lattice.position(cell);
+    lattice_.for_each_cell([&](const Cell& cell, std::size_t i) {
+      if (!lattice_.inside(cell)) return;
+      const Point x = lattice_.position(cell);
       const double fraction = material_fraction(x);
-      if (const auto inclusion = rigid_inclusion(x)) {
+      if (const auto inclusion = rules.rigid_inclusion(x)) {
         body_.kind[i] = PointKind::rigid;
         body_.rigid_points[*inclusion].push_back(i);
       } else if (fraction >= kKeptFraction) {
@@ -83,12 +83,6 @@ class CellFiller {
   }
 
  private:
-  [[nodiscard]] std::optional<std::size_t> rigid_inclusion(const Point& x) const {
-    for (std::size_t n = 0; n < in_.defects.inclusions.size(); ++n)
-      if (signed_distance(in_.defects.inclusions[n], x) < kRigidMargin * in_.spacing) return n;
-    return std::nullopt;
-  }
-
   [[nodiscard]] double material_fraction(const Point& x) const {
     double fraction = covered_fraction(in_.shape, x, in_.spacing, in_.dimension);
     for (const auto* shapes : {&in_.defects.holes, &in_.defects.inclusions})
@@ -106,8 +100,8 @@ class CellFiller {
       for (int j = -along(1); j <= along(1); ++j)
         for (int i = -along(0); i <= along(0); ++i) {
           const Cell other{cell[0] + i, cell[1] + j, cell[2] + k};
-          if (!body_.lattice.inside(other)) continue;
-          const std::size_t index = body_.lattice.index(other);
+          if (!lattice_.inside(other)) continue;
+          const std::size_t index = lattice_.index(other);
           const int distance = i * i + j * j + k * k;
           if (body_.kind[index] != PointKind::body || distance > best) continue;
           if (distance < best) nearest.clear();
@@ -119,7 +113,8 @@ class CellFiller {
   }
 
   const LatticeBodyInput& in_;
-  LatticeBody& body_;
+  const Lattice& lattice_;
+  Body& body_;
 };
 
 /// Reflections that bring a ghost cell into the body, or nothing if a face in between has no ghosts.
@@ -137,140 +132,103 @@ std::optional<std::pair<Cell, Faces>> reflect_inside(const Lattice& lattice, con
   return lattice.inside(cell) ? std::make_optional(std::make_pair(cell, faces)) : std::nullopt;
 }
 
-void make_ghosts(const Faces& mirrored, LatticeBody& body) {
-  body.lattice.for_each_cell([&](const Cell& cell, std::size_t i) {
-    if (body.lattice.inside(cell)) return;
-    const auto image = reflect_inside(body.lattice, mirrored, cell);
+void make_ghosts(const Faces& mirrored, const Lattice& lattice, Body& body) {
+  lattice.for_each_cell([&](const Cell& cell, std::size_t i) {
+    if (lattice.inside(cell)) return;
+    const auto image = reflect_inside(lattice, mirrored, cell);
     if (!image) return;
-    const std::size_t master = body.lattice.index(image->first);
+    const std::size_t master = lattice.index(image->first);
     if (body.kind[master] != PointKind::body) return;
     body.kind[i] = PointKind::ghost;
     body.ghosts.push_back({i, master, image->second});
   });
 }
 
-/// Position of x after the reflections that take a ghost at `cell` into the body.
-Point mirror_image(const Lattice& lattice, const Cell& ghost, const Point& x) {
-  Point image = x;
+/// Faces behind which a cell lies.
+Faces faces_before(const Lattice& lattice, const Cell& cell) {
+  Faces faces;
   for (std::size_t a = 0; a < 3; ++a) {
-    const double lower = lattice.position(Cell{0, 0, 0})[a] - 0.5 * lattice.spacing();
-    if (ghost[a] < 0) image[a] = 2 * lower - x[a];
-    if (ghost[a] >= lattice.cells()[a])
-      image[a] = 2 * (lower + lattice.cells()[a] * lattice.spacing()) - x[a];
+    faces.set(2 * a, cell[a] < 0);
+    faces.set(2 * a + 1, cell[a] >= lattice.cells()[a]);
   }
-  return image;
+  return faces;
 }
 
 class BondMaker {
  public:
-  explicit BondMaker(LatticeBody& body)
-      : body_(body),
-        holes_{body.defects.holes, {}, {}},
-        cracks_{{}, body.defects.cracks, {}},
-        touch_(kTouch * body.lattice.spacing()) {}
+  BondMaker(Body& body, LatticeBonds& bonds)
+      : body_(body), rules_(body), lattice_(bonds.lattice), stencil_(bonds.stencil), planes_(bonds.bonds) {}
 
   void make() {
     for (const std::size_t i : body_.points) {
-      const Cell cell = body_.lattice.cell(i);
-      const Point x = body_.lattice.position(cell);
-      const bool near_defect = body_.defects.distance_to_edge(x) <= 2 * body_.horizon || near_face(cell);
-      for (std::size_t k = 0; k < body_.stencil.size(); ++k) make_bond(i, cell, x, k, near_defect);
+      const Cell cell = lattice_.cell(i);
+      const Point x = lattice_.position(cell);
+      const bool near_defect = rules_.near_defect(x);
+      std::size_t family = 0;
+      for (std::size_t k = 0; k < stencil_.size(); ++k)
+        family += make_bond(i, cell, x, k, near_defect) ? 1 : 0;
+      body_.complete[i] = family == stencil_.size();
     }
   }
 
  private:
-  // A bond to a ghost may touch the mirror image of a defect, which the distance to the defect does not tell.
-  [[nodiscard]] bool near_face(const Cell& cell) const {
-    for (int a = 0; a < body_.lattice.dimension(); ++a) {
-      const auto axis = static_cast<std::size_t>(a);
-      if (cell[axis] < body_.lattice.reach(a) ||
-          cell[axis] >= body_.lattice.cells()[axis] - body_.lattice.reach(a))
-        return true;
-    }
-    return false;
-  }
-
-  void make_bond(std::size_t i, const Cell& cell, const Point& x, std::size_t k, bool near_defect) {
-    const Cell& o = body_.stencil.offset[k];
+  bool make_bond(std::size_t i, const Cell& cell, const Point& x, std::size_t k, bool near_defect) {
+    const Cell& o = stencil_.offset[k];
     const Cell other{cell[0] + o[0], cell[1] + o[1], cell[2] + o[2]};
-    const std::size_t j = BondPlanes::neighbour(body_.stencil, k, i);
-    const PointKind kind = body_.kind[j];
-    if (kind == PointKind::outside) return;
-    const Point y = body_.lattice.position(other);
-    if (near_defect) {
-      if (meets_inclusion(i, x, y, k) || kind == PointKind::rigid) return;
-      if (cut_by(holes_, x, y, other)) return;
-      ++body_.whole_family[i];
-      if (cut_by(cracks_, x, y, other)) return;
+    const std::size_t j = BondPlanes::neighbour(stencil_, k, i);
+    if (body_.kind[j] == PointKind::outside) return false;
+    BondRules::Bond bond;
+    if (near_defect)
+      bond = rules_.between(x, lattice_.position(other), body_.kind[j], faces_before(lattice_, other));
+    if (bond.verdict == BondRules::Verdict::none) return false;
+    ++body_.whole_family[i];
+    if (bond.verdict == BondRules::Verdict::cracked) return false;
+    if (bond.verdict == BondRules::Verdict::interface) {
+      body_.interface.push_back({i, j, bond.inclusion, bond.end});
     } else {
-      ++body_.whole_family[i];
+      planes_.join(stencil_, k, i);
     }
-    body_.bonds.join(body_.stencil, k, i);
+    return true;
   }
 
-  [[nodiscard]] bool cut_by(const Defects& defects, const Point& x, const Point& y, const Cell& other) const {
-    if (defects.cuts(x, y, touch_)) return true;
-    if (body_.lattice.inside(other)) return false;
-    const auto image = [&](const Point& p) { return mirror_image(body_.lattice, other, p); };
-    return defects.cuts(image(x), image(y), touch_);
-  }
-
-  /// Records the bond as one to an inclusion if it meets one before its end.
-  bool meets_inclusion(std::size_t i, const Point& x, const Point& y, std::size_t k) {
-    for (std::size_t n = 0; n < body_.defects.inclusions.size(); ++n) {
-      const auto inside = chord(body_.defects.inclusions[n], x, y, touch_);
-      if (!inside) continue;
-      Point end;
-      for (std::size_t a = 0; a < 3; ++a) end[a] = x[a] + inside->from * (y[a] - x[a]);
-      if (holes_.cuts(x, end, touch_) || cracks_.cuts(x, end, touch_)) return true;
-      ++body_.whole_family[i];
-      body_.interface.push_back({i, k, n, end});
-      return true;
-    }
-    return false;
-  }
-
-  LatticeBody& body_;
-  Defects holes_;
-  Defects cracks_;
-  double touch_;
+  Body& body_;
+  BondRules rules_;
+  const Lattice& lattice_;
+  const Stencil& stencil_;
+  BondPlanes& planes_;
 };
 
 }  // namespace
 
-std::span<const InterfaceBond> LatticeBody::interface_of(std::size_t point) const {
-  const auto [first, last] =
-      std::equal_range(interface.begin(), interface.end(), InterfaceBond{point, 0, 0, {}},
-                       [](const InterfaceBond& a, const InterfaceBond& b) { return a.point < b.point; });
-  return {first, last};
-}
-
-std::size_t LatticeBody::family_size(std::size_t point) const {
-  std::size_t size = interface_of(point).size();
-  for (std::size_t k = 0; k < stencil.size(); ++k) size += bonds.exists(k, point) ? 1 : 0;
-  return size;
-}
-
-LatticeBody make_lattice_body(const LatticeBodyInput& input) {
-  LatticeBody body;
-  body.lattice = make_lattice(input);
+Body make_lattice_body(const LatticeBodyInput& input) {
+  LatticeBonds grid;
+  grid.lattice = make_lattice(input);
+  grid.stencil = make_stencil(grid.lattice, input.horizon);
+  const std::size_t size = grid.lattice.size();
+  grid.bonds = BondPlanes(grid.stencil.size(), size);
+  Body body;
+  body.dimension = input.dimension;
+  body.spacing = input.spacing;
   body.horizon = input.horizon;
   body.thickness = input.thickness;
-  body.shape = input.shape;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    body.faces[2 * axis] = grid.lattice.position(Cell{0, 0, 0})[axis] - 0.5 * input.spacing;
+    body.faces[2 * axis + 1] = body.faces[2 * axis] + grid.lattice.cells()[axis] * input.spacing;
+  }
   body.defects = input.defects;
-  body.stencil = make_stencil(body.lattice, input.horizon);
-  body.kind.assign(body.lattice.size(), PointKind::outside);
-  body.volume.assign(body.lattice.size(), 0.0);
-  body.whole_family.assign(body.lattice.size(), 0);
+  body.kind.assign(size, PointKind::outside);
+  body.volume.assign(size, 0.0);
+  body.whole_family.assign(size, 0);
+  body.complete.assign(size, false);
   body.rigid_points.resize(input.defects.inclusions.size());
-  body.bonds = BondPlanes(body.stencil.size(), body.lattice.size());
 
-  CellFiller(input, body).fill();
-  for (std::size_t i = 0; i < body.lattice.size(); ++i)
+  CellFiller(input, grid.lattice, body).fill();
+  for (std::size_t i = 0; i < size; ++i)
     if (body.kind[i] == PointKind::body) body.points.push_back(i);
   if (body.points.empty()) throw InputError("nothing is left of the body: holes and inclusions cover it");
-  make_ghosts(input.mirrored, body);
-  BondMaker(body).make();
+  make_ghosts(input.mirrored, grid.lattice, body);
+  BondMaker(body, grid).make();
+  body.bonds = std::move(grid);
   return body;
 }
 

@@ -4,19 +4,16 @@
 
 namespace riven {
 
-namespace {
-
-// Relative slack of the horizon: far above rounding, far below the gap between neighbour shells.
-constexpr double kHorizonSlack = 1e-6;
-
-}  // namespace
+double horizon_limit(double horizon) {
+  return horizon * (1 + 1e-6);
+}
 
 int stencil_reach(double horizon, double spacing) {
-  return static_cast<int>(std::floor(horizon / spacing * (1 + kHorizonSlack)));
+  return static_cast<int>(std::floor(horizon_limit(horizon) / spacing));
 }
 
 Stencil make_stencil(const Lattice& lattice, double horizon) {
-  const double limit = horizon * (1 + kHorizonSlack);
+  const double limit = horizon_limit(horizon);
   const int reach = stencil_reach(horizon, lattice.spacing());
   const auto along = [&](int axis) { return axis < lattice.dimension() ? reach : 0; };
   Stencil stencil;

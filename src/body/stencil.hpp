@@ -17,8 +17,11 @@ struct Stencil {
   [[nodiscard]] std::size_t size() const { return offset.size(); }
 };
 
-/// Largest number of cells along an axis within the horizon. A horizon of n spacings means n also where
-/// rounding put it a little below.
+/// The horizon with a relative slack, far above rounding and far below the gap between neighbour shells: a
+/// horizon of n spacings means n also where rounding put it a little below.
+double horizon_limit(double horizon);
+
+/// Largest number of cells along an axis within the horizon.
 int stencil_reach(double horizon, double spacing);
 
 /// All neighbours whose distance is at most the horizon (m), sorted by storage shift.

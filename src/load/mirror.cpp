@@ -10,13 +10,6 @@ std::size_t axis_of(std::size_t face) {
   return face / 2;
 }
 
-/// Coordinate of a face of the lattice's box (m).
-double face_coordinate(const Lattice& lattice, std::size_t face) {
-  const std::size_t axis = axis_of(face);
-  const double lower = lattice.position(Cell{0, 0, 0})[axis] - 0.5 * lattice.spacing();
-  return face % 2 == 0 ? lower : lower + lattice.cells()[axis] * lattice.spacing();
-}
-
 /// The ghost's faces in the order of reflection, the one normal to the component first.
 std::vector<std::size_t> reflection_order(const Faces& faces, std::size_t component) {
   std::vector<std::size_t> order;
@@ -29,17 +22,16 @@ std::vector<std::size_t> reflection_order(const Faces& faces, std::size_t compon
 
 }  // namespace
 
-void add_mirror_constraints(const LatticeBody& body, const std::array<std::optional<FaceLoad>, 6>& faces,
-                            std::size_t component_stride, Constraints& constraints) {
+void add_mirror_constraints(const Body& body, const std::array<std::optional<FaceLoad>, 6>& faces,
+                            Constraints& constraints) {
   for (const GhostPoint& ghost : body.ghosts) {
-    for (std::size_t component = 0; component < static_cast<std::size_t>(body.lattice.dimension());
-         ++component) {
+    for (std::size_t component = 0; component < static_cast<std::size_t>(body.dimension); ++component) {
       Constraint constraint;
-      constraint.slave = component * component_stride + ghost.point;
-      constraint.master = component * component_stride + ghost.master;
-      Point x = body.lattice.position(ghost.point);
+      constraint.slave = component * body.size() + ghost.point;
+      constraint.master = component * body.size() + ghost.master;
+      Point x = body.position(ghost.point);
       for (const std::size_t face : reflection_order(ghost.faces, component)) {
-        const double plane = face_coordinate(body.lattice, face);
+        const double plane = body.faces[face];
         const auto& given = faces[face]->displacement[component];
         if (given) {
           Point on_face = x;

@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 
-#include "body/lattice_body.hpp"
+#include "body/body.hpp"
 #include "load/constraints.hpp"
 
 namespace riven {
@@ -14,12 +14,11 @@ struct FaceLoad {
   std::size_t load = 0;  // number under which reactions are collected
 };
 
-/// Makes the ghost points of a lattice body follow their masters so that every mirrored face has its
+/// Makes the ghost points of a body follow their masters so that every mirrored face has its
 /// prescribed displacement: u_ghost = 2 U* - u_master for given components, u_ghost = u_master for free ones
 /// (peridynamics theory, 5a rule 1). At a corner, component a is reflected at the face normal to a last, so
-/// that the reaction of that face is its own section force. `component_stride`: distance in a state between
-/// two components of one point.
-void add_mirror_constraints(const LatticeBody& body, const std::array<std::optional<FaceLoad>, 6>& faces,
-                            std::size_t component_stride, Constraints& constraints);
+/// that the reaction of that face is its own section force.
+void add_mirror_constraints(const Body& body, const std::array<std::optional<FaceLoad>, 6>& faces,
+                            Constraints& constraints);
 
 }  // namespace riven

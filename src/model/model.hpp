@@ -33,13 +33,16 @@ class Model {
   /// Length of a state vector. Entries that are no degree of freedom (padding) have zero force and mass.
   [[nodiscard]] virtual std::size_t dofs() const = 0;
 
-  /// Internal force -dE/du (N) at every entry. Returns what is wrong if the state is outside the model's
-  /// range; `force` is then not to be used.
+  /// Internal force (N) at every entry, -dE/du if `conservative()`. Returns what is wrong if the state is
+  /// outside the model's range; `force` is then not to be used.
   [[nodiscard]] virtual std::optional<Breakdown> internal_force(std::span<const double> u,
                                                                 std::span<double> force) = 0;
 
   /// Strain energy E (J).
   [[nodiscard]] virtual double strain_energy(std::span<const double> u) = 0;
+
+  /// Whether the force is the gradient of the energy; if not, an energy balance tells nothing about a run.
+  [[nodiscard]] virtual bool conservative() const = 0;
 
   /// Lumped mass (kg) of every entry; 0 for padding.
   virtual void mass(std::span<double> mass) const = 0;

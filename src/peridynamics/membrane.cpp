@@ -29,142 +29,164 @@ Eigen::Vector2d plane(const Point& p) {
 
 }  // namespace
 
-Membrane::Membrane(LatticeBody body, Material material, double stabilisation)
-    : body_(std::move(body)), material_(std::move(material)), stabilisation_(stabilisation) {
-  if (body_.lattice.dimension() != 2)
+Membrane::Membrane(Body body, Material material, double stabilisation)
+    : PointModel(std::move(body), material.density),
+      material_(std::move(material)),
+      stabilisation_(stabilisation) {
+  if (this->body().dimension != 2)
     throw InputError("a membrane is two-dimensional: give the box two sizes and a thickness");
-  const std::size_t n = body_.lattice.size();
+  const std::size_t n = this->body().size();
   for (auto* plane :
        {&kappa_, &smallest_weight_, &mean_s2_, &mean_s4_, &energy_density_, &force_a_, &force_b_})
     plane->assign(n, 0.0);
   for (auto& plane : coefficient_) plane.assign(n, 0.0);
   for (auto& plane : mean_gradient_) plane.assign(n, 0.0);
   for (auto& plane : force_n_) plane.assign(n, 0.0);
-  collapsed_in_row_.assign(body_.lattice.rows(), -1);
   listed_index_.assign(n, -1);
-  for (std::size_t k = 0; k < body_.stencil.size(); ++k) {
-    const PlaneBond bond{body_.stencil.bond[k][0], body_.stencil.bond[k][1]};
-    const double length = body_.stencil.length[k];
+  make_stencil_weights();
+  make_families();
+  sort_incoming();
+}
+
+void Membrane::make_stencil_weights() {
+  const LatticeBonds* on = body().on_lattice();
+  if (on == nullptr) return;
+  collapsed_in_row_.assign(on->lattice.rows(), -1);
+  for (std::size_t k = 0; k < on->stencil.size(); ++k) {
+    const PlaneBond bond{on->stencil.bond[k][0], on->stencil.bond[k][1]};
+    const double length = on->stencil.length[k];
     Moments weight = angular_functions(bond);
     for (double& w : weight) w /= length;
-    stencil_.push_back({body_.stencil.shift[k], bond.x, bond.y, 1 / (length * length), weight});
-  }
-  make_inclusions();
-  make_families();
-}
-
-void Membrane::make_inclusions() {
-  for (const Shape& shape : body_.defects.inclusions) {
-    Inclusion inclusion;
-    double area = 0;
-    if (const auto* disc = std::get_if<Disc>(&shape)) {
-      inclusion.center = plane(disc->center);
-      inclusion.gyration = disc->radius / std::sqrt(2.0);
-      area = std::numbers::pi * disc->radius * disc->radius;
-    } else if (const auto* box = std::get_if<Box>(&shape)) {
-      inclusion.center = plane(box->center);
-      inclusion.gyration = std::hypot(box->half_size[0], box->half_size[1]) / std::sqrt(3.0);
-      area = 4 * box->half_size[0] * box->half_size[1];
-    } else {
-      throw InputError("an inclusion of a membrane is a disc or a box");
-    }
-    inclusion.mass = material_.density * area * body_.thickness;
-    inclusions_.push_back(inclusion);
+    stencil_.push_back({on->stencil.shift[k], bond.x, bond.y, 1 / (length * length), weight});
   }
 }
 
-/// Bonds of a point without weights: those of the lattice, then those that end on inclusions.
+/// Bonds of a point without weights: those to other points, then those that end on inclusions.
 std::vector<MembraneBond> Membrane::bonds_of(std::size_t point) const {
   std::vector<MembraneBond> bonds;
-  for (std::size_t k = 0; k < stencil_.size(); ++k)
-    if (body_.bonds.exists(k, point))
-      bonds.push_back(
-          {{stencil_[k].x, stencil_[k].y}, 0, BondPlanes::neighbour(body_.stencil, k, point), -1, {0, 0}});
-  const Eigen::Vector2d x = plane(body_.lattice.position(point));
-  for (const InterfaceBond& bond : body_.interface_of(point)) {
-    const Eigen::Vector2d end = plane(bond.end);
-    bonds.push_back(
-        {end - x, 0, 0, static_cast<int>(bond.inclusion), end - inclusions_[bond.inclusion].center});
-  }
+  const Eigen::Vector2d x = plane(body().position(point));
+  body().for_each_neighbour(point, [&](std::size_t j) {
+    bonds.push_back({plane(body().position(j)) - x, 0, static_cast<End>(j), -1});
+  });
+  for (const InterfaceBond& bond : body().interface_of(point))
+    bonds.push_back({plane(bond.end) - x, 0,
+                     end_of(static_cast<std::size_t>(&bond - body().interface.data())),
+                     static_cast<int>(bond.inclusion)});
   return bonds;
 }
 
-/// Directions of a family at the lattice's own lengths: a bond to an inclusion keeps the weight that it had
+/// Directions of a family at its whole lengths: a bond to an inclusion keeps the weight that it had
 /// before it was shortened (theory 5a, rule 4). The order is that of `bonds_of`.
 std::vector<PlaneBond> Membrane::unshortened_bonds_of(std::size_t point) const {
   std::vector<PlaneBond> bonds;
-  for (std::size_t k = 0; k < stencil_.size(); ++k)
-    if (body_.bonds.exists(k, point)) bonds.push_back({stencil_[k].x, stencil_[k].y});
-  for (const InterfaceBond& bond : body_.interface_of(point))
-    bonds.push_back({stencil_[bond.offset].x, stencil_[bond.offset].y});
+  const Point x = body().position(point);
+  const auto add = [&](std::size_t j) {
+    const Point y = body().position(j);
+    bonds.push_back({y[0] - x[0], y[1] - x[1]});
+  };
+  body().for_each_neighbour(point, add);
+  for (const InterfaceBond& bond : body().interface_of(point)) add(bond.neighbour);
   return bonds;
 }
 
 double Membrane::stabilisation_modulus(std::size_t point) const {
-  const bool whole = body_.family_size(point) == body_.stencil.size();
-  return stabilisation_ * 0.5 * shear_modulus(material_.law) * (whole ? 1.0 : kCutFamilyStabilisation);
+  return stabilisation_ * 0.5 * shear_modulus(material_.law) *
+         (body().complete[point] ? 1.0 : kCutFamilyStabilisation);
 }
 
 void Membrane::make_families() {
-  FamilyWeights whole;  // most points have the whole stencil: solve for it once
-  for (const std::size_t i : body_.points) {
+  FamilyWeights whole;  // most points of a lattice have the whole stencil: solve for it once
+  for (const std::size_t i : body().points) {
     kappa_[i] = stabilisation_modulus(i);
-    const std::size_t size = body_.family_size(i);
-    directed_bonds_ += size;
-    const bool at_interface = !body_.interface_of(i).empty();
-    const bool is_whole = size == body_.stencil.size() && !at_interface;
+    directed_bonds_ += body().family_size(i);
+    const bool at_interface = !body().interface_of(i).empty();
+    const bool is_whole = body().complete[i] && !at_interface && body().on_lattice() != nullptr;
     FamilyWeights weights =
         is_whole && !whole.weight.empty() ? whole : moment_corrected_weights(unshortened_bonds_of(i));
     if (is_whole && whole.weight.empty()) whole = weights;
     smallest_weight_[i] = weights.smallest_ratio;
-    if (weights.kind == FamilyWeights::Kind::smooth && !at_interface) {
+    if (weights.kind == FamilyWeights::Kind::smooth && !at_interface && body().on_lattice() != nullptr) {
       for (std::size_t m = 0; m < kMoments; ++m) coefficient_[m][i] = weights.coefficients[m];
-      continue;
+    } else {
+      add_listed_family(i, weights, bonds_of(i));
     }
-    ListedFamily family;
-    family.point = i;
-    family.by_least_squares = weights.kind == FamilyWeights::Kind::listed;
-    family.by_gradient = weights.kind == FamilyWeights::Kind::gradient;
-    family.bonds = bonds_of(i);
-    Eigen::Matrix2d shape = Eigen::Matrix2d::Zero();
-    for (std::size_t j = 0; j < family.bonds.size(); ++j) {
-      family.bonds[j].weight = weights.weight[j];
-      const Eigen::Vector2d n = family.bonds[j].reference.normalized();
-      shape += weights.weight[j] * n * n.transpose();
-    }
-    if (family.by_gradient && shape.determinant() < kFlatFamily) {
-      family.by_gradient = false;  // no weights, no gradient: the point hangs on its neighbours' forces alone
-      family.bonds.clear();
-    }
-    if (family.by_gradient) family.inverse_shape = shape.inverse();
-    listed_index_[i] = static_cast<std::ptrdiff_t>(listed_.size());
-    listed_.push_back(std::move(family));
   }
+}
+
+void Membrane::add_listed_family(std::size_t point, const FamilyWeights& weights,
+                                 std::vector<MembraneBond> bonds) {
+  ListedFamily family;
+  family.point = point;
+  family.by_least_squares = weights.kind == FamilyWeights::Kind::listed;
+  family.by_gradient = weights.kind == FamilyWeights::Kind::gradient;
+  Eigen::Matrix2d shape = Eigen::Matrix2d::Zero();
+  for (std::size_t j = 0; j < bonds.size(); ++j) {
+    bonds[j].weight = weights.weight[j];
+    const Eigen::Vector2d n = bonds[j].reference.normalized();
+    shape += weights.weight[j] * n * n.transpose();
+  }
+  if (family.by_gradient && shape.determinant() < kFlatFamily) {
+    family.by_gradient = false;  // no weights, no gradient: the point hangs on its neighbours' forces alone
+    bonds.clear();
+  }
+  if (family.by_gradient) family.inverse_shape = shape.inverse();
+  ListedFamilyBonds& list = listed_bonds_;
+  family.begin = list.end.size();
+  for (const MembraneBond& bond : bonds) {
+    list.x.push_back(bond.reference.x());
+    list.y.push_back(bond.reference.y());
+    list.weight.push_back(bond.weight);
+    list.end.push_back(bond.end);
+  }
+  family.end = list.end.size();
+  listed_index_[point] = static_cast<std::ptrdiff_t>(listed_.size());
+  listed_.push_back(family);
+}
+
+/// Sorts the bonds of the listed families by their far ends.
+void Membrane::sort_incoming() {
+  ListedFamilyBonds& list = listed_bonds_;
+  list.force_x.assign(list.end.size(), 0.0);
+  list.force_y.assign(list.end.size(), 0.0);
+  std::vector<std::size_t> count(body().size(), 0);
+  for (std::uint32_t b = 0; b < list.end.size(); ++b) {
+    if (is_surface(list.end[b])) {
+      list.surface.push_back(b);
+    } else {
+      ++count[list.end[b]];
+    }
+  }
+  list.incoming_begin.push_back(0);
+  std::vector<std::size_t> next(body().size(), 0);
+  for (std::size_t i = 0; i < body().size(); ++i) {
+    if (count[i] == 0) continue;
+    next[i] = list.incoming_begin.back();
+    list.target.push_back(static_cast<std::uint32_t>(i));
+    list.incoming_begin.push_back(next[i] + count[i]);
+  }
+  list.incoming.resize(list.incoming_begin.back());
+  for (std::uint32_t b = 0; b < list.end.size(); ++b)
+    if (!is_surface(list.end[b])) list.incoming[next[list.end[b]]++] = b;
+}
+
+MembraneBond Membrane::listed_bond(std::size_t number) const {
+  const ListedFamilyBonds& list = listed_bonds_;
+  const End end = list.end[number];
+  return {{list.x[number], list.y[number]},
+          list.weight[number],
+          end,
+          is_surface(end) ? static_cast<int>(body().interface[end - body().size()].inclusion) : -1};
 }
 
 Eigen::Vector2d Membrane::deformed(std::size_t point, const MembraneBond& bond,
                                    std::span<const double> u) const {
-  const std::size_t n = body_.lattice.size();
-  const Eigen::Vector2d here(u[point], u[n + point]);
-  if (bond.inclusion < 0)
-    return bond.reference + Eigen::Vector2d(u[bond.neighbour], u[n + bond.neighbour]) - here;
-  const auto inclusion = static_cast<std::size_t>(bond.inclusion);
-  const std::size_t dof = inclusion_dof(inclusion);
-  return bond.reference + inclusions_[inclusion].displacement(bond.arm, u, dof) - here;
+  return bond.reference + displacement(bond.end, u) - Eigen::Vector2d(u[point], u[body().size() + point]);
 }
 
 Eigen::Vector2d Membrane::bond_force(const PointForce& law, const MembraneBond& bond,
                                      const Eigen::Vector2d& y) {
   const double inverse2 = 1 / bond.reference.squaredNorm();
   return bond.weight * inverse2 * ((law.a + law.b * y.squaredNorm() * inverse2) * y + law.n * bond.reference);
-}
-
-std::size_t Membrane::dofs() const {
-  return 2 * body_.lattice.size() + 3 * inclusions_.size();
-}
-
-std::size_t Membrane::inclusion_dof(std::size_t inclusion) const {
-  return 2 * body_.lattice.size() + 3 * inclusion;
 }
 
 std::size_t Membrane::points_by_least_squares() const {
@@ -186,80 +208,31 @@ std::vector<std::string> Membrane::describe() const {
 }
 
 std::size_t Membrane::bytes() const {
-  const std::size_t n = body_.lattice.size();
-  constexpr std::size_t planes =
-      kMoments + 4 + 4 + 7 + 1;  // doubles per stored point; the last is the body's volume
-  std::size_t listed = 0;
-  for (const ListedFamily& family : listed_)
-    listed += sizeof family + family.bonds.size() * sizeof(MembraneBond);
-  return n * (planes * sizeof(double) + sizeof(std::ptrdiff_t) + sizeof(PointKind) + sizeof(std::uint16_t)) +
-         n * body_.stencil.size() / 8 + body_.points.size() * sizeof(std::size_t) + listed;
+  constexpr std::size_t planes = kMoments + 4 + 4 + 7;  // doubles per stored point
+  constexpr std::size_t per_bond = 5 * sizeof(double) + 2 * sizeof(End);
+  return body().bytes() + body().size() * (planes * sizeof(double) + sizeof(std::ptrdiff_t)) +
+         listed_.size() * sizeof(ListedFamily) + listed_bonds_.end.size() * per_bond +
+         listed_bonds_.target.size() * (sizeof(End) + sizeof(std::size_t));
 }
 
 double Membrane::strain_energy(std::span<const double> u) {
   update_points(u);
-  return ordered_sum_of(body_.points.size(), [&](std::size_t n) {
-    const std::size_t i = body_.points[n];
-    return body_.volume[i] * energy_density_[i];
+  return ordered_sum_of(body().points.size(), [&](std::size_t n) {
+    const std::size_t i = body().points[n];
+    return body().volume[i] * energy_density_[i];
   });
-}
-
-void Membrane::mass(std::span<double> mass) const {
-  const std::size_t n = body_.lattice.size();
-  std::fill(mass.begin(), mass.end(), 0.0);
-  for (const std::size_t i : body_.points) mass[i] = mass[n + i] = material_.density * body_.volume[i];
-  for (std::size_t c = 0; c < inclusions_.size(); ++c)
-    for (std::size_t d = 0; d < 3; ++d) mass[inclusion_dof(c) + d] = inclusions_[c].mass;
 }
 
 std::optional<Breakdown> Membrane::inspect(std::span<const double> u) {
   update_points(u);
   if (auto breakdown = first_collapsed()) return breakdown;
   const auto& g = mean_gradient_;
-  for (const std::size_t i : body_.points)
+  for (const std::size_t i : body().points)
     if (!(g[0][i] * g[3][i] - g[1][i] * g[2][i] > 0))
       return Breakdown{
-          body_.lattice.position(i),
+          body().position(i),
           "the sheet has folded over itself: the deformation gradient of a point has a determinant <= 0"};
   return std::nullopt;
-}
-
-void Membrane::move(std::span<double> u, const std::array<std::array<double, 3>, 3>& gradient,
-                    const Point& shift) const {
-  const auto displacement = [&](const Point& x, std::size_t axis) {
-    return shift[axis] + gradient[axis][0] * x[0] + gradient[axis][1] * x[1];
-  };
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    for (const std::size_t i : body_.points)
-      u[axis * body_.lattice.size() + i] += displacement(body_.lattice.position(i), axis);
-    for (std::size_t c = 0; c < inclusions_.size(); ++c)
-      u[inclusion_dof(c) + axis] +=
-          displacement({inclusions_[c].center.x(), inclusions_[c].center.y(), 0}, axis);
-  }
-}
-
-std::vector<Point> Membrane::positions() const {
-  std::vector<Point> positions;
-  for (const std::size_t i : body_.points) positions.push_back(body_.lattice.position(i));
-  for (const auto& inclusion : body_.rigid_points)
-    for (const std::size_t i : inclusion) positions.push_back(body_.lattice.position(i));
-  return positions;
-}
-
-std::vector<Point> Membrane::displacements(std::span<const double> u) const {
-  std::vector<Point> displacements;
-  for (const std::size_t i : body_.points) displacements.push_back({u[i], u[body_.lattice.size() + i], 0});
-  for (std::size_t c = 0; c < inclusions_.size(); ++c) {
-    const std::size_t dof = inclusion_dof(c);
-    Inclusion inclusion = inclusions_[c];
-    inclusion.rotation = Eigen::Rotation2Dd(u[dof + 2] / inclusion.gyration);
-    for (const std::size_t i : body_.rigid_points[c]) {
-      const Eigen::Vector2d d =
-          inclusion.displacement(plane(body_.lattice.position(i)) - inclusion.center, u, dof);
-      displacements.push_back({d.x(), d.y(), 0});
-    }
-  }
-  return displacements;
 }
 
 Eigen::Matrix2d Membrane::nominal_stress(std::size_t point, std::span<const double> u) const {
@@ -268,16 +241,16 @@ Eigen::Matrix2d Membrane::nominal_stress(std::size_t point, std::span<const doub
   for_each_bond(point, [&](const MembraneBond& bond) {
     stress += bond_force(law, bond, deformed(point, bond, u)) * bond.reference.transpose();
   });
-  return stress / body_.volume[point];
+  return stress / body().volume[point];
 }
 
 std::vector<ModelField> Membrane::fields(std::span<const double> u) {
   update_points(u);
   ModelField damage{"damage", 1, {}}, energy{"strain_energy_density", 1, {}}, stress{"nominal_stress", 9, {}},
       weight{"weight_minimum", 1, {}};
-  for (const std::size_t i : body_.points) {
-    const double whole = body_.whole_family[i];  // 0 for a point that holes have cut off from all others
-    damage.values.push_back(whole > 0 ? 1 - static_cast<double>(body_.family_size(i)) / whole : 0);
+  for (const std::size_t i : body().points) {
+    const double whole = body().whole_family[i];  // 0 for a point that holes have cut off from all others
+    damage.values.push_back(whole > 0 ? 1 - static_cast<double>(body().family_size(i)) / whole : 0);
     energy.values.push_back(energy_density_[i]);
     weight.values.push_back(smallest_weight_[i]);
     const Eigen::Matrix2d p = nominal_stress(i, u);
@@ -331,7 +304,7 @@ void Membrane::stiffness_bound(std::span<const double> u, std::span<double> boun
     double block, first, second;  // N/m; lengths of the gradients of the family sums (1/m)
   };
   std::vector<BondBound> family;
-  for (const std::size_t i : body_.points) {
+  for (const std::size_t i : body().points) {
     const PointForce law = point_force(i);
     FamilySum first, second;
     family.clear();
@@ -345,30 +318,15 @@ void Membrane::stiffness_bound(std::span<const double> u, std::span<double> boun
       family.push_back({bond, block, ga.norm(), gb.norm()});
     });
     const auto [waa, wab, wbb] = family_curvature(i);
-    const double per_first = body_.volume[i] * (waa * first.row() + wab * second.row());
-    const double per_second = body_.volume[i] * (wab * first.row() + wbb * second.row());
-    bound[i] += per_first * first.sum.norm() + per_second * second.sum.norm();
+    const double per_first = body().volume[i] * (waa * first.row() + wab * second.row());
+    const double per_second = body().volume[i] * (wab * first.row() + wbb * second.row());
+    double own = per_first * first.sum.norm() + per_second * second.sum.norm();
     for (const BondBound& b : family) {
-      bound[i] += 2 * b.block;
-      add_far_bound(b.bond, 2 * b.block + per_first * b.first + per_second * b.second, bound);
+      own += 2 * b.block;
+      add_row(b.bond.end, 2 * b.block + per_first * b.first + per_second * b.second, bound);
     }
+    add_row(static_cast<End>(i), own, bound);
   }
-  for (std::size_t i = 0; i < body_.lattice.size(); ++i) bound[body_.lattice.size() + i] = bound[i];
-}
-
-/// Adds to the row bound of a bond's far end.
-void Membrane::add_far_bound(const MembraneBond& bond, double row, std::span<double> bound) const {
-  if (bond.inclusion < 0) {
-    bound[bond.neighbour] += row;
-    return;
-  }
-  const auto inclusion = static_cast<std::size_t>(bond.inclusion);
-  const std::size_t dof = inclusion_dof(inclusion);
-  const double lever = bond.arm.norm() / inclusions_[inclusion].gyration;
-  // The bond's end moves by the translation and by the lever times the rotation's entry: each row has both.
-  bound[dof] += row * (1 + lever);
-  bound[dof + 1] += row * (1 + lever);
-  bound[dof + 2] += row * lever * (1 + lever);
 }
 
 }  // namespace riven

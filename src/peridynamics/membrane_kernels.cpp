@@ -53,27 +53,27 @@ Vector difference(const double* ux, const double* uy, std::size_t i, std::ptrdif
 }  // namespace
 
 void Membrane::update_points(std::span<const double> u) {
-  for (std::size_t c = 0; c < inclusions_.size(); ++c)
-    inclusions_[c].rotation = Eigen::Rotation2Dd(u[inclusion_dof(c) + 2] / inclusions_[c].gyration);
-  parallel_for(static_cast<std::ptrdiff_t>(body_.lattice.rows()), [&](std::ptrdiff_t r) {
-    const auto row = static_cast<std::size_t>(r);
-    average_row(row, u);
-    std::visit([&](const auto& law) { respond_row(law, row); }, material_.law);
-  });
+  place_inclusions(u);
+  if (const LatticeBonds* on = body().on_lattice())
+    parallel_for(static_cast<std::ptrdiff_t>(on->lattice.rows()), [&](std::ptrdiff_t r) {
+      const auto row = static_cast<std::size_t>(r);
+      average_row(*on, row, u);
+      std::visit([&](const auto& law) { respond_row(law, on->lattice, row); }, material_.law);
+    });
   parallel_for(static_cast<std::ptrdiff_t>(listed_.size()),
                [&](std::ptrdiff_t n) { respond_listed(listed_[static_cast<std::size_t>(n)], u); });
 }
 
 /// Family averages of the points of a row that follow the lattice's formula.
-void Membrane::average_row(std::size_t row, std::span<const double> u) {
+void Membrane::average_row(const LatticeBonds& on, std::size_t row, std::span<const double> u) {
   const double* ux = u.data();
-  const double* uy = ux + body_.lattice.size();
-  const std::size_t begin = body_.lattice.row_begin(row);
-  for (std::size_t i = begin; i < begin + body_.lattice.row_length(); i += kLanes) {
+  const double* uy = ux + body().size();
+  const std::size_t begin = on.lattice.row_begin(row);
+  for (std::size_t i = begin; i < begin + on.lattice.row_length(); i += kLanes) {
     const auto coefficients = load_all(coefficient_, i);
     Lanes s2_sum{}, s4_sum{}, gxx{}, gxy{}, gyx{}, gyy{};
     for (std::size_t k = 0; k < stencil_.size(); ++k) {
-      const std::uint8_t bits = body_.bonds.mask(k, i / kLanes);
+      const std::uint8_t bits = on.bonds.mask(k, i / kLanes);
       if (bits == 0) continue;
       const StencilBond& bond = stencil_[k];
       const Vector du = difference(ux, uy, i, bond.shift);
@@ -100,10 +100,10 @@ void Membrane::average_row(std::size_t row, std::span<const double> u) {
 
 /// Energy and force law of the points of a row, from their averages; theory eq. (9), and rule 5 of 5a.
 template <class Law>
-void Membrane::respond_row(const Law& law, std::size_t row) {
+void Membrane::respond_row(const Law& law, const Lattice& lattice, std::size_t row) {
   collapsed_in_row_[row] = -1;
-  const std::size_t begin = body_.lattice.row_begin(row);
-  for (std::size_t i = begin; i < begin + body_.lattice.row_length(); ++i) {
+  const std::size_t begin = lattice.row_begin(row);
+  for (std::size_t i = begin; i < begin + lattice.row_length(); ++i) {
     if (coefficient_[0][i] == 0) continue;  // no body point, or a listed one
     const double a = mean_s2_[i], b = mean_s4_[i];
     if (!(area_ratio_squared(a, b) > kCollapse * a * a)) {
@@ -111,7 +111,7 @@ void Membrane::respond_row(const Law& law, std::size_t row) {
       continue;
     }
     const FamilyEnergy e = family_energy(law, a, b);
-    const double v = body_.volume[i], kappa = kappa_[i];
+    const double v = body().volume[i], kappa = kappa_[i];
     double gradient2 = 0;
     for (std::size_t c = 0; c < 4; ++c) {
       gradient2 += mean_gradient_[c][i] * mean_gradient_[c][i];
@@ -139,14 +139,15 @@ PointForce Membrane::point_force(std::size_t point) const {
 
 void Membrane::respond_listed(const ListedFamily& family, std::span<const double> u) {
   const std::size_t i = family.point;
-  if (family.bonds.empty()) {
+  if (family.begin == family.end) {
     mean_s2_[i] = mean_s4_[i] = 1;
     for (std::size_t c = 0; c < 4; ++c) mean_gradient_[c][i] = c % 3 == 0 ? 0.5 : 0;
     return set_point(i, 0, {});
   }
   double a = 0, b = 0;
   Eigen::Matrix2d m = Eigen::Matrix2d::Zero();
-  for (const MembraneBond& bond : family.bonds) {
+  for (std::size_t n = family.begin; n < family.end; ++n) {
+    const MembraneBond bond = listed_bond(n);
     const Eigen::Vector2d y = deformed(i, bond, u);
     const double inverse2 = 1 / bond.reference.squaredNorm();
     const double s2 = y.squaredNorm() * inverse2;
@@ -160,7 +161,7 @@ void Membrane::respond_listed(const ListedFamily& family, std::span<const double
       family.by_gradient ? Eigen::Matrix2d(m * family.inverse_shape) : Eigen::Matrix2d(2 * m);
   for (std::size_t c = 0; c < 4; ++c)  // half of F, as for the points of the formula
     mean_gradient_[c][i] = 0.5 * f(static_cast<Eigen::Index>(c / 2), static_cast<Eigen::Index>(c % 2));
-  const double v = body_.volume[i], kappa = kappa_[i];
+  const double v = body().volume[i], kappa = kappa_[i];
   const double stabilisation = kappa * (a - f.cwiseProduct(m).sum());
   if (family.by_gradient) {
     mean_s4_[i] =
@@ -177,8 +178,7 @@ void Membrane::respond_listed(const ListedFamily& family, std::span<const double
 
 std::optional<Breakdown> Membrane::first_collapsed() const {
   const auto breakdown = [&](std::size_t i) {
-    return Breakdown{body_.lattice.position(i),
-                     "the sheet collapses: the area ratio of a family falls to zero"};
+    return Breakdown{body().position(i), "the sheet collapses: the area ratio of a family falls to zero"};
   };
   for (const std::ptrdiff_t i : collapsed_in_row_)
     if (i >= 0) return breakdown(static_cast<std::size_t>(i));
@@ -190,18 +190,19 @@ std::optional<Breakdown> Membrane::first_collapsed() const {
 }
 
 /// Forces on the points of a row: from their own law and from those of their neighbours (theory, eq. (1)).
-void Membrane::gather_row(std::size_t row, std::span<const double> u, std::span<double> force) const {
-  const std::size_t size = body_.lattice.size();
+void Membrane::gather_row(const LatticeBonds& on, std::size_t row, std::span<const double> u,
+                          std::span<double> force) const {
+  const std::size_t size = body().size();
   const double* ux = u.data();
   const double* uy = ux + size;
-  const std::size_t begin = body_.lattice.row_begin(row);
-  for (std::size_t i = begin; i < begin + body_.lattice.row_length(); i += kLanes) {
+  const std::size_t begin = on.lattice.row_begin(row);
+  for (std::size_t i = begin; i < begin + on.lattice.row_length(); i += kLanes) {
     const auto coefficients = load_all(coefficient_, i);
     const Lanes a = load(at(force_a_.data(), i)), b = load(at(force_b_.data(), i));
     const auto n_own = load_all(force_n_, i);
     Lanes fx{}, fy{};
     for (std::size_t k = 0; k < stencil_.size(); ++k) {
-      const std::uint8_t bits = body_.bonds.mask(k, i / kLanes);
+      const std::uint8_t bits = on.bonds.mask(k, i / kLanes);
       if (bits == 0) continue;
       const StencilBond& bond = stencil_[k];
       const Vector du = difference(ux, uy, i, bond.shift);
@@ -224,38 +225,49 @@ void Membrane::gather_row(std::size_t row, std::span<const double> u, std::span<
   }
 }
 
-/// Forces of the listed families on both ends of their bonds; few, so in one thread and in order.
-void Membrane::scatter_listed(std::span<const double> u, std::span<double> force) const {
-  const auto add = [&](std::size_t x_entry, std::size_t y_entry, const Eigen::Vector2d& t) {
-    force[x_entry] += t.x();
-    force[y_entry] += t.y();
-  };
-  const std::size_t n = body_.lattice.size();
-  for (const ListedFamily& family : listed_) {
-    const PointForce law = point_force(family.point);
-    for (const MembraneBond& bond : family.bonds) {
-      const Eigen::Vector2d t = bond_force(law, bond, deformed(family.point, bond, u));
-      add(family.point, n + family.point, t);
-      if (bond.inclusion < 0) {
-        add(bond.neighbour, n + bond.neighbour, -t);
-        continue;
-      }
-      const Inclusion& inclusion = inclusions_[static_cast<std::size_t>(bond.inclusion)];
-      const std::size_t dof = inclusion_dof(static_cast<std::size_t>(bond.inclusion));
-      const Eigen::Vector2d arm = inclusion.rotation * bond.arm;
-      add(dof, dof + 1, -t);
-      force[dof + 2] -= (arm.x() * t.y() - arm.y() * t.x()) / inclusion.gyration;
-    }
+/// Forces of a listed family on its point, kept for the bonds' far ends.
+void Membrane::pull_listed(const ListedFamily& family, std::span<const double> u, std::span<double> force) {
+  const std::size_t i = family.point;
+  const PointForce law = point_force(i);
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (std::size_t n = family.begin; n < family.end; ++n) {
+    const MembraneBond bond = listed_bond(n);
+    const Eigen::Vector2d t = bond_force(law, bond, deformed(i, bond, u));
+    listed_bonds_.force_x[n] = t.x();
+    listed_bonds_.force_y[n] = t.y();
+    sum += t;
   }
+  force[i] += sum.x();
+  force[body().size() + i] += sum.y();
+}
+
+/// The opposite forces on the far ends of the listed families' bonds.
+void Membrane::push_far_ends(std::span<double> force) const {
+  const ListedFamilyBonds& list = listed_bonds_;
+  parallel_for(static_cast<std::ptrdiff_t>(list.target.size()), [&](std::ptrdiff_t t) {
+    const auto target = static_cast<std::size_t>(t);
+    double x = 0, y = 0;
+    for (std::size_t n = list.incoming_begin[target]; n < list.incoming_begin[target + 1]; ++n) {
+      x += list.force_x[list.incoming[n]];
+      y += list.force_y[list.incoming[n]];
+    }
+    force[list.target[target]] -= x;
+    force[body().size() + list.target[target]] -= y;
+  });
+  for (const std::uint32_t b : list.surface)
+    push_inclusion(list.end[b], -Eigen::Vector2d(list.force_x[b], list.force_y[b]), force);
 }
 
 std::optional<Breakdown> Membrane::internal_force(std::span<const double> u, std::span<double> force) {
   update_points(u);
   if (auto breakdown = first_collapsed()) return breakdown;
-  parallel_for(static_cast<std::ptrdiff_t>(body_.lattice.rows()),
-               [&](std::ptrdiff_t row) { gather_row(static_cast<std::size_t>(row), u, force); });
-  for (std::size_t d = 2 * body_.lattice.size(); d < dofs(); ++d) force[d] = 0;
-  scatter_listed(u, force);
+  std::fill(force.begin(), force.end(), 0.0);
+  if (const LatticeBonds* on = body().on_lattice())
+    parallel_for(static_cast<std::ptrdiff_t>(on->lattice.rows()),
+                 [&](std::ptrdiff_t row) { gather_row(*on, static_cast<std::size_t>(row), u, force); });
+  parallel_for(static_cast<std::ptrdiff_t>(listed_.size()),
+               [&](std::ptrdiff_t n) { pull_listed(listed_[static_cast<std::size_t>(n)], u, force); });
+  push_far_ends(force);
   return std::nullopt;
 }
 

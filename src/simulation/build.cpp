@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "body/lattice_body.hpp"
 #include "load/mirror.hpp"
 #include "peridynamics/membrane.hpp"
 #include "simulation/preflight.hpp"
@@ -109,7 +110,7 @@ Faces loaded_faces(const Case& in) {
   return faces;
 }
 
-LatticeBody make_body(const Case& in) {
+Body make_body(const Case& in) {
   const LatticeInput& lattice = in.geometry.lattice;
   try {
     return make_lattice_body({.dimension = lattice.dimension,
@@ -126,11 +127,11 @@ LatticeBody make_body(const Case& in) {
   }
 }
 
-PointSet make_set(const SetInput& in, const LatticeBody& body) {
+PointSet make_set(const SetInput& in, const Body& body) {
   PointSet set{in.name, {}};
-  const double touch = 1e-9 * body.lattice.spacing();
+  const double touch = 1e-9 * body.spacing;
   for (std::size_t n = 0; n < body.points.size(); ++n) {
-    const Point x = body.lattice.position(body.points[n]);
+    const Point x = body.position(body.points[n]);
     const bool inside =
         in.where ? (*in.where)(Variables{.position = x}) != 0 : signed_distance(*in.shape, x) <= touch;
     if (inside) set.points.push_back(n);
@@ -150,7 +151,7 @@ LoadFunction make_function(const Expression& expression, Parameter parameter) {
   };
 }
 
-std::unique_ptr<Membrane> make_model(const Case& in, LatticeBody body) {
+std::unique_ptr<Membrane> make_model(const Case& in, Body body) {
   const Material material = make_material(in.materials.front());
   try {
     return std::make_unique<Membrane>(std::move(body), material, in.model.stabilisation);
@@ -175,7 +176,7 @@ class LoadBuilder {
         }
       }
     for (std::size_t face = 0; face < kFaces; ++face) check_face(face);
-    add_mirror_constraints(body_, faces_, body_.lattice.size(), *simulation_.constraints);
+    add_mirror_constraints(body_, faces_, *simulation_.constraints);
     hold_fixed_inclusions();
   }
 
@@ -219,9 +220,9 @@ class LoadBuilder {
                                  "points, or other components free",
                                  on.text));
         loaded_[dof] = true;
-        simulation_.constraints->add({.slave = dof,
-                                      .terms = {{function, body_.lattice.position(body_.points[point]),
-                                                 static_cast<int>(axis), 1, kFaces}}});
+        simulation_.constraints->add(
+            {.slave = dof,
+             .terms = {{function, body_.position(body_.points[point]), static_cast<int>(axis), 1, kFaces}}});
       }
     }
   }
@@ -241,7 +242,7 @@ class LoadBuilder {
 
   Simulation& simulation_;
   const Membrane& model_;
-  const LatticeBody& body_;
+  const Body& body_;
   std::array<std::optional<FaceLoad>, kFaces> faces_;
   std::array<Location, kFaces> face_at_;
   std::vector<bool> loaded_;  // entries that a set's load has taken
@@ -263,14 +264,7 @@ const PointSet& Simulation::set(const std::string& name) const {
 }
 
 std::size_t Simulation::entry(std::size_t axis, std::size_t number) const {
-  return axis * body->lattice.size() + body->points[number];
-}
-
-double Simulation::face_area(std::size_t face) const {
-  double area = body->thickness;
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(body->lattice.dimension()); ++axis)
-    if (axis != face / 2) area *= body->lattice.cells()[axis] * body->lattice.spacing();
-  return area;
+  return axis * body->size() + body->points[number];
 }
 
 Simulation build_simulation(const Case& input) {
@@ -278,7 +272,7 @@ Simulation build_simulation(const Case& input) {
   Simulation simulation;
   simulation.input = input;
   simulation.parameter = input.solver.method == "verlet" ? Parameter::time : Parameter::stretch;
-  LatticeBody body = make_body(input);
+  Body body = make_body(input);
   for (const SetInput& set : input.sets) simulation.sets.push_back(make_set(set, body));
   auto model = make_model(input, std::move(body));
   simulation.body = &model->body();

@@ -114,7 +114,7 @@ bool jumps_at_start(const Simulation& simulation) {
   std::vector<double> u(simulation.model->dofs(), 0.0);
   simulation.constraints->set_parameter(simulation.parameter == Parameter::time ? 0 : 1);
   simulation.constraints->apply(u);
-  const double noticeable = 1e-6 * simulation.body->lattice.spacing();
+  const double noticeable = 1e-6 * simulation.body->spacing;
   return std::any_of(u.begin(), u.end(), [&](double value) { return !(std::abs(value) <= noticeable); });
 }
 
@@ -175,8 +175,8 @@ void check_before_run(const Simulation& simulation, const Probes& probes) {
 
 std::vector<std::string> warnings(const Simulation& simulation) {
   std::vector<std::string> list;
-  const LatticeBody& body = *simulation.body;
-  const double ratio = body.horizon / body.lattice.spacing();
+  const Body& body = *simulation.body;
+  const double ratio = body.horizon / body.spacing;
   if (ratio < 2.9)
     list.push_back(fmt::format(
         "the horizon is {:.3g} spacings: families of so few directions are stiff along the lattice; 3 "
@@ -192,15 +192,13 @@ std::vector<std::string> warnings(const Simulation& simulation) {
   if (jumps_at_start(simulation))
     list.push_back(fmt::format("the loads are not zero at {}: the body starts with a jump",
                                simulation.parameter == Parameter::time ? "time 0" : "stretch 1"));
-  const auto* box = std::get_if<Box>(&body.shape);
   for (const Shape& inclusion : body.defects.inclusions) {
     bool near = false;
-    for (std::size_t axis = 0; box != nullptr && axis < 2; ++axis)
-      for (const double side : {-1.0, 1.0}) {
-        Point edge = std::visit([](const auto& shape) { return shape.center; }, inclusion);
-        edge[axis] = box->center[axis] + side * box->half_size[axis];
-        near = near || signed_distance(inclusion, edge) < body.horizon;
-      }
+    for (std::size_t face = 0; face < 4; ++face) {
+      Point edge = std::visit([](const auto& shape) { return shape.center; }, inclusion);
+      edge[face / 2] = body.faces[face];
+      near = near || signed_distance(inclusion, edge) < body.horizon;
+    }
     if (near)
       list.emplace_back(
           "an inclusion is nearer than a horizon to an edge: the strip between is too thin for this lattice");
@@ -262,9 +260,11 @@ TimeEstimate time_estimate(const Simulation& simulation) {
     estimate.evaluations = std::ceil(solver.until / solver.step.value_or(step));
   } else {
     constexpr double kPerPointAlongSide = 3.5;  // waves must cross the body a few times in each load step
-    const auto& cells = simulation.body->lattice.cells();
-    estimate.evaluations =
-        kPerPointAlongSide * *std::max_element(cells.begin(), cells.end()) * load_steps(solver);
+    const auto& faces = simulation.body->faces;
+    double side = 0;  // m
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(simulation.body->dimension); ++axis)
+      side = std::max(side, faces[2 * axis + 1] - faces[2 * axis]);
+    estimate.evaluations = kPerPointAlongSide * side / simulation.body->spacing * load_steps(solver);
   }
   return estimate;
 }

@@ -18,8 +18,8 @@ class DisplacementField {
   DisplacementField(const Simulation& simulation, std::span<const double> u)
       : positions_(simulation.model->positions()),
         displacements_(simulation.model->displacements(u)),
-        interpolation_(positions_, displacements_, simulation.body->defects,
-                       simulation.body->lattice.spacing(), simulation.body->horizon) {}
+        interpolation_(positions_, displacements_, simulation.body->defects, simulation.body->spacing,
+                       simulation.body->horizon) {}
 
   [[nodiscard]] Point at(const Point& place, const ProbeInput& probe) const {
     const auto displacement = interpolation_.at(place);
@@ -70,7 +70,7 @@ Probes::Probes(const Simulation& simulation) : simulation_(simulation) {
 }
 
 void Probes::add_columns(const ProbeInput& probe) {
-  const auto dimension = static_cast<std::size_t>(simulation_.body->lattice.dimension());
+  const auto dimension = static_cast<std::size_t>(simulation_.body->dimension);
   if (!probe.component.empty() && axis_of(probe) >= dimension)
     throw InputError(probe.at, fmt::format("probe {}: component {}; expected one of the body's {}",
                                            probe.name, probe.component, dimension));
@@ -91,7 +91,7 @@ void Probes::add_columns(const ProbeInput& probe) {
 }
 
 std::vector<double> Probes::evaluate(const State& state, const Constraints& constraints) const {
-  const auto dimension = static_cast<std::size_t>(simulation_.body->lattice.dimension());
+  const auto dimension = static_cast<std::size_t>(simulation_.body->dimension);
   std::optional<DisplacementField> field;
   for (const ProbeInput& probe : simulation_.input.probes)
     if (!field && (probe.kind == "displacement" || probe.kind == "stretch"))
@@ -106,7 +106,7 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
     if (probe.kind == "reaction")
       add(face ? constraints.reaction(*face) : reaction_of(simulation_.set(probe.on.text), constraints), 1);
     if (probe.kind == "nominal-stress" && face)
-      add(constraints.reaction(*face), simulation_.face_area(*face));
+      add(constraints.reaction(*face), simulation_.body->face_area(*face));
     if (probe.kind == "nominal-stress" && !face) {
       const std::array<double, 9> stress = mean_stress(simulation_.set(probe.on.text), state.u);
       values.insert(values.end(), {stress[0], stress[1], stress[3], stress[4]});
@@ -124,7 +124,7 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
 Point Probes::reaction_of(const PointSet& set, const Constraints& constraints) const {
   Point sum{};
   for (const std::size_t number : set.points)
-    for (std::size_t axis = 0; axis < static_cast<std::size_t>(simulation_.body->lattice.dimension()); ++axis)
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(simulation_.body->dimension); ++axis)
       sum[axis] += constraints.external_force(simulation_.entry(axis, number));
   return sum;
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "body/lattice_body.hpp"
+#include "body/body.hpp"
 #include "input/case.hpp"
 #include "load/constraints.hpp"
 #include "model/model.hpp"
@@ -24,7 +24,7 @@ struct Simulation {
   Case input;
   Parameter parameter = Parameter::stretch;  // what the solver marches
   std::unique_ptr<Model> model;
-  const LatticeBody* body = nullptr;  // the model's
+  const Body* body = nullptr;  // the model's
   std::unique_ptr<Constraints> constraints;
   std::vector<PointSet> sets;
 
@@ -32,10 +32,8 @@ struct Simulation {
   static std::optional<std::size_t> face(const std::string& name);
   /// A declared set. The input layer has checked that it exists.
   [[nodiscard]] const PointSet& set(const std::string& name) const;
-  /// Entry of a state that holds component `axis` of a body point: lattice models keep a plane per component.
+  /// Entry of a state that holds component `axis` of a body point: point models keep a plane per component.
   [[nodiscard]] std::size_t entry(std::size_t axis, std::size_t number) const;
-  /// Reference area (m^2) of a face of the box.
-  [[nodiscard]] double face_area(std::size_t face) const;
 };
 
 /// Throws InputError where the case can't be built: an empty set, overlapping defects, a load that the model

@@ -47,13 +47,13 @@ inline FaceLoads uniaxial() {
 
 inline Constraints constrain(const Membrane& membrane, const FaceLoads& loads) {
   Constraints constraints(membrane.dofs(), 7);
-  add_mirror_constraints(membrane.body(), loads, membrane.body().lattice.size(), constraints);
+  add_mirror_constraints(membrane.body(), loads, constraints);
   return constraints;
 }
 
 /// Keeps an inclusion where it is.
 inline void hold_inclusions(const Membrane& membrane, Constraints& constraints) {
-  for (std::size_t e = 2 * membrane.body().lattice.size(); e < membrane.dofs(); ++e)
+  for (std::size_t e = 2 * membrane.body().size(); e < membrane.dofs(); ++e)
     constraints.add({.slave = e, .master = Constraint::kNone, .sign = 1, .terms = {}});
 }
 

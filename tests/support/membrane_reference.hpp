@@ -43,15 +43,15 @@ class PlainMembrane {
   };
 
   [[nodiscard]] std::vector<Bond> family(std::size_t i, const State2& u) const {
-    const LatticeBody& body = membrane_.body();
-    const std::size_t n = body.lattice.size();
-    const Eigen::Vector2d x = plane(body.lattice.position(i)), here = x + Eigen::Vector2d(u[i], u[n + i]);
+    const Body& body = membrane_.body();
+    const std::size_t n = body.size();
+    const Eigen::Vector2d x = plane(body.position(i)), here = x + Eigen::Vector2d(u[i], u[n + i]);
     std::vector<Bond> bonds;
     membrane_.for_each_bond(i, [&](const MembraneBond& bond) {
       Eigen::Vector2d there;
       if (bond.inclusion < 0) {
-        const std::size_t j = bond.neighbour;
-        there = plane(body.lattice.position(j)) + Eigen::Vector2d(u[j], u[n + j]);
+        const std::size_t j = bond.end;
+        there = plane(body.position(j)) + Eigen::Vector2d(u[j], u[n + j]);
       } else {
         const auto c = static_cast<std::size_t>(bond.inclusion);
         const std::size_t dof = membrane_.inclusion_dof(c);
@@ -69,7 +69,7 @@ class PlainMembrane {
   }
 
   void add_point(std::size_t i, const State2& u, Result& result) const {
-    const LatticeBody& body = membrane_.body();
+    const Body& body = membrane_.body();
     const std::vector<Bond> bonds = family(i, u);
     double a = 0, b = 0;
     Eigen::Matrix2d m = Eigen::Matrix2d::Zero(), k = m;
@@ -82,7 +82,7 @@ class PlainMembrane {
     }
     if (bonds.empty()) return;  // a point whose bonds all lie on one line has no energy
     const Eigen::Matrix2d f = m * k.inverse();
-    const bool whole = bonds.size() == body.stencil.size();
+    const bool whole = body.complete[i];
     const double kappa = stabilisation_ * 0.5 * shear_modulus(membrane_.material().law) * (whole ? 1 : 0.1);
     const bool gradient = by_gradient(i);
     const double j2 = 3 * a * a - 2 * b, j4 = j2 * j2;
@@ -114,17 +114,17 @@ class PlainMembrane {
   /// t: force on the point, -t on the other end.
   void add_bond(std::size_t i, const MembraneBond& bond, const Eigen::Vector2d& t, const State2& u,
                 State2& force) const {
-    const std::size_t n = membrane_.body().lattice.size();
+    const std::size_t n = membrane_.body().size();
     force[i] += t.x();
     force[n + i] += t.y();
     if (bond.inclusion < 0) {
-      force[bond.neighbour] -= t.x();
-      force[n + bond.neighbour] -= t.y();
+      force[bond.end] -= t.x();
+      force[n + bond.end] -= t.y();
       return;
     }
     const auto c = static_cast<std::size_t>(bond.inclusion);
     const Shape& shape = membrane_.body().defects.inclusions[c];
-    const Eigen::Vector2d x = plane(membrane_.body().lattice.position(i));
+    const Eigen::Vector2d x = plane(membrane_.body().position(i));
     const Eigen::Vector2d arm = turn(c, u) * (x + bond.reference - center_of(shape));
     const std::size_t dof = membrane_.inclusion_dof(c);
     force[dof] -= t.x();

@@ -16,7 +16,7 @@ inline Eigen::Vector2d plane(const Point& p) {
 }
 
 /// Body points and ghosts: the lattice entries of a state that mean something.
-inline std::vector<std::size_t> live_points(const LatticeBody& body) {
+inline std::vector<std::size_t> live_points(const Body& body) {
   std::vector<std::size_t> live = body.points;
   for (const GhostPoint& ghost : body.ghosts) live.push_back(ghost.point);
   return live;
@@ -24,7 +24,7 @@ inline std::vector<std::size_t> live_points(const LatticeBody& body) {
 
 /// Entries of a state that are a degree of freedom or a ghost's.
 inline std::vector<std::size_t> live_entries(const Membrane& membrane) {
-  const std::size_t n = membrane.body().lattice.size();
+  const std::size_t n = membrane.body().size();
   std::vector<std::size_t> entries;
   for (const std::size_t i : live_points(membrane.body())) {
     entries.push_back(i);
@@ -50,11 +50,11 @@ inline double gyration_of(const Shape& inclusion) {
 /// rotation.
 inline State2 affine_state(const Membrane& membrane, const Eigen::Matrix2d& f,
                            const Eigen::Vector2d& shift = Eigen::Vector2d::Zero()) {
-  const LatticeBody& body = membrane.body();
-  const std::size_t n = body.lattice.size();
+  const Body& body = membrane.body();
+  const std::size_t n = body.size();
   State2 u(membrane.dofs(), 0.0);
   for (const std::size_t i : live_points(body)) {
-    const Eigen::Vector2d x = plane(body.lattice.position(i)), d = f * x + shift - x;
+    const Eigen::Vector2d x = plane(body.position(i)), d = f * x + shift - x;
     u[i] = d.x();
     u[n + i] = d.y();
   }
@@ -72,9 +72,9 @@ inline State2 affine_state(const Membrane& membrane, const Eigen::Matrix2d& f,
 /// them, noise on every entry (ghosts too, independently of their masters). Softened until the sheet neither
 /// collapses nor folds.
 inline State2 random_state(Membrane& membrane, Random& random, double noise = 0.12) {
-  const LatticeBody& body = membrane.body();
-  const std::size_t n = body.lattice.size();
-  const double d = body.lattice.spacing();
+  const Body& body = membrane.body();
+  const std::size_t n = body.size();
+  const double d = body.spacing;
   const Eigen::Matrix2d rotation = random.rotation();
   const Eigen::Vector2d shift(random.between(-1, 1), random.between(-1, 1));
   const State2 rigid = affine_state(membrane, rotation, shift);
@@ -88,7 +88,7 @@ inline State2 random_state(Membrane& membrane, Random& random, double noise = 0.
   for (const std::size_t i : live_points(body)) {
     double distance = 10 * d;
     for (const Shape& shape : inclusions)
-      distance = std::min(distance, signed_distance(shape, body.lattice.position(i)));
+      distance = std::min(distance, signed_distance(shape, body.position(i)));
     const double far = std::min(1.0, distance / (4 * d)), blend = far * far * (3 - 2 * far);
     for (const std::size_t e : {i, n + i})
       change[e] = blend * (affine[e] - rigid[e]) + noise * std::min(d, distance) * random.between(-1, 1);

@@ -50,7 +50,7 @@ TEST(MirrorLayers, HoldAffineFields) {
     const State2 exact = affine_state(membrane, load.path(1.4));
     State2 u = exact;
     for (const GhostPoint& ghost : membrane.body().ghosts)
-      u[ghost.point] = u[membrane.body().lattice.size() + ghost.point] = 99;
+      u[ghost.point] = u[membrane.body().size() + ghost.point] = 99;
     constraints.apply(u);
     for (std::size_t e = 0; e < u.size(); ++e)
       EXPECT_NEAR(u[e], exact[e], 1e-15) << load.name;  // 4e-16 measured
@@ -95,13 +95,12 @@ TEST(MirrorLayers, ReduceTheForceToTheGradientInTheFreeEntries) {
         constrain(membrane, edges(kLoads[seed].path, in.mirrored, kLoads[seed].rollers));
     State2 u(membrane.dofs(), 0.0);  // near rest, so that what the loads make of it is admissible
     for (const std::size_t e : live_entries(membrane))
-      u[e] = 0.01 * membrane.body().lattice.spacing() * random.between(-1, 1);
+      u[e] = 0.01 * membrane.body().spacing * random.between(-1, 1);
     constraints.set_parameter(1.003);
     constraints.apply(u);
     State2 force = force_of(membrane, u);
     constraints.reduce(force);
-    const double h =
-        1e-4 * membrane.body().lattice.spacing();  // rounding of E / h leaves 1.2e-10 of the largest force
+    const double h = 1e-4 * membrane.body().spacing;  // rounding of E / h leaves 1.2e-10 of the largest force
     for (const std::size_t e : live_entries(membrane)) {
       if (!constraints.is_free(e)) {
         EXPECT_EQ(force[e], 0);

@@ -135,7 +135,7 @@ TEST(DynamicRelaxation, CarriesAFreeSheetWithOneEdge) {
   const State state = problem.solve({.targets = {1.2}});
   // Converged to forces of strains of 1e-11 in each bond, which add up along the sheet as in a
   // cantilever: 1.3e-8 at its end.
-  const std::size_t size = problem.membrane.body().lattice.size();
+  const std::size_t size = problem.membrane.body().size();
   for (const std::size_t i : problem.membrane.body().points) {
     EXPECT_NEAR(state.u[i], 0.2, 1e-7);
     EXPECT_NEAR(state.u[size + i], 0, 1e-7);

@@ -35,7 +35,7 @@ TEST_P(RandomBody, ForceIsTheGradientOfTheEnergy) {
     const State2 force = force_of(membrane, u);
     // Differences: h^4 of the fifth derivative, largest on the short bonds at inclusions, and 1e-16 E / h of
     // rounding. Measured: 3.5e-10 of the largest force.
-    const double h = 2e-4 * membrane.body().lattice.spacing(), tolerance = 1e-8 * largest(force);
+    const double h = 2e-4 * membrane.body().spacing, tolerance = 1e-8 * largest(force);
     for (const std::size_t e : live_entries(membrane)) {
       const auto energy = [&](double value) {
         const double kept = std::exchange(u[e], value);
@@ -75,9 +75,9 @@ TEST_P(RandomBody, AgreesWithPlainLoopsOverTheBonds) {
 TEST_P(RandomBody, KeepsLinearAndAngularMomentum) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     auto [membrane, u] = sample(seed, GetParam());
-    const LatticeBody& body = membrane.body();
+    const Body& body = membrane.body();
     const State2 force = force_of(membrane, u);
-    const std::size_t n = body.lattice.size();
+    const std::size_t n = body.size();
     Eigen::Vector2d sum(0, 0);
     double torque = 0, scale = 0;
     const auto add = [&](const Eigen::Vector2d& y, const Eigen::Vector2d& f) {
@@ -86,7 +86,7 @@ TEST_P(RandomBody, KeepsLinearAndAngularMomentum) {
       scale += f.norm();
     };
     for (const std::size_t i : live_points(body))
-      add(plane(body.lattice.position(i)) + Eigen::Vector2d(u[i], u[n + i]), {force[i], force[n + i]});
+      add(plane(body.position(i)) + Eigen::Vector2d(u[i], u[n + i]), {force[i], force[n + i]});
     for (std::size_t c = 0; c < body.defects.inclusions.size(); ++c) {
       const Shape& shape = body.defects.inclusions[c];
       const std::size_t dof = membrane.inclusion_dof(c);

@@ -29,7 +29,7 @@ double largest_over_bound(Membrane& membrane, const State2& u, Random& random, i
   const std::vector<std::size_t> entries = live_entries(membrane);
   State2 z(membrane.dofs(), 0.0), moved;  // z = B^(1/2) v
   for (const std::size_t e : entries) z[e] = random.between(-1, 1);
-  const double h = 1e-6 * membrane.body().lattice.spacing();
+  const double h = 1e-6 * membrane.body().spacing;
   double value = 0;
   for (int n = 0; n < iterations; ++n) {
     State2 v(membrane.dofs(), 0.0);

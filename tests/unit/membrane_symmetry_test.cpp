@@ -24,8 +24,8 @@ TEST_P(Symmetric, ForceTurnsWithTheObserver) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     Random random(seed);
     Membrane membrane = make(random_body(random));
-    const LatticeBody& body = membrane.body();
-    const std::size_t n = body.lattice.size();
+    const Body& body = membrane.body();
+    const std::size_t n = body.size();
     const State2 u = random_state(membrane, random), force = force_of(membrane, u);
     const double angle = random.between(-3, 3);
     const Eigen::Matrix2d q = Eigen::Rotation2Dd(angle).toRotationMatrix();
@@ -35,7 +35,7 @@ TEST_P(Symmetric, ForceTurnsWithTheObserver) {
       turned[ex] = d.x();
       turned[ey] = d.y();
     };
-    for (const std::size_t i : live_points(body)) turn(plane(body.lattice.position(i)), i, n + i);
+    for (const std::size_t i : live_points(body)) turn(plane(body.position(i)), i, n + i);
     for (std::size_t c = 0; c < body.defects.inclusions.size(); ++c) {
       const std::size_t dof = membrane.inclusion_dof(c);
       turn(center_of(body.defects.inclusions[c]), dof, dof + 1);
@@ -82,26 +82,27 @@ TEST_P(Symmetric, ForceFollowsReflectionsAndQuarterTurnsOfTheBody) {
       for (Segment& crack : moved.defects.cracks) crack = {image(crack.a), image(crack.b)};
       Membrane membrane = make(in), other = make(moved);
       const State2 u = random_state(membrane, random);
-      const std::size_t n = membrane.body().lattice.size();
+      const std::size_t n = membrane.body().size();
       const auto partner = [&](std::size_t i) {
-        const Point x = image(membrane.body().lattice.position(i)),
-                    first = other.body().lattice.position(Cell{0, 0, 0});
-        const double d = other.body().lattice.spacing();
-        return other.body().lattice.index({static_cast<int>(std::lround((x[0] - first[0]) / d)),
-                                           static_cast<int>(std::lround((x[1] - first[1]) / d)), 0});
+        const Point x = image(membrane.body().position(i)),
+                    first = other.body().on_lattice()->lattice.position(Cell{0, 0, 0});
+        const double d = other.body().spacing;
+        return other.body().on_lattice()->lattice.index({static_cast<int>(std::lround((x[0] - first[0]) / d)),
+                                                         static_cast<int>(std::lround((x[1] - first[1]) / d)),
+                                                         0});
       };
       State2 v(other.dofs(), 0.0);
       ASSERT_EQ(other.points(), membrane.points());
       for (const std::size_t i : membrane.body().points) {
         const Eigen::Vector2d d = image.q * Eigen::Vector2d(u[i], u[n + i]);
         v[partner(i)] = d.x();
-        v[other.body().lattice.size() + partner(i)] = d.y();
+        v[other.body().size() + partner(i)] = d.y();
       }
       const State2 force = force_of(membrane, u), image_force = force_of(other, v);
       for (const std::size_t i : membrane.body().points) {
         const Eigen::Vector2d expected = image.q * Eigen::Vector2d(force[i], force[n + i]);
         const std::size_t j = partner(i);
-        const Eigen::Vector2d found(image_force[j], image_force[other.body().lattice.size() + j]);
+        const Eigen::Vector2d found(image_force[j], image_force[other.body().size() + j]);
         ASSERT_LT((expected - found).norm(), 1e-10 * largest(force))
             << "seed " << seed;  // rounding of the weights
       }

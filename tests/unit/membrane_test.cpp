@@ -27,8 +27,7 @@ INSTANTIATE_TEST_SUITE_P(Membranes, Sheet, ::testing::ValuesIn(unit_laws()), law
 
 /// Size of the bond forces in a body: mu times thickness times spacing.
 double force_scale(const Membrane& membrane) {
-  return membrane.body().thickness * membrane.body().lattice.spacing() *
-         shear_modulus(membrane.material().law);
+  return membrane.body().thickness * membrane.body().spacing * shear_modulus(membrane.material().law);
 }
 
 /// Whether a point has bonds that span the plane; one without has no stress of its own.
@@ -100,7 +99,7 @@ TEST_P(Sheet, InsideHasNoNetForceInAHomogeneousState) {
   Membrane membrane = make(sheet(16, 14, 0.1));
   for (int n = 0; n < 10; ++n) {
     const State2 u = affine_state(membrane, random.gradient(0.7, 2)), force = force_of(membrane, u);
-    const Lattice& lattice = membrane.body().lattice;
+    const Lattice& lattice = membrane.body().on_lattice()->lattice;
     double edge = 0;
     for (const std::size_t i : membrane.body().points) {
       const Cell c = lattice.cell(i);
@@ -120,25 +119,25 @@ TEST_P(Sheet, CutInTwoBehavesAsTwoSheets) {
   const double d = 0.1;
   Membrane cut = make(sheet(16, 9, d, {}, {{}, {{{0, -1, 0}, {0, 1, 0}}}, {}}));
   Membrane half = make(sheet(8, 9, d));
-  const std::size_t n = cut.body().lattice.size(), m = half.body().lattice.size();
+  const std::size_t n = cut.body().size(), m = half.body().size();
   Random random(3);
   const State2 u = random_state(half, random);
   // The left half holds the state, the right one is undeformed and far away.
   State2 v(cut.dofs(), 0.0);
   for (const std::size_t i : cut.body().points) {
-    const Cell c = cut.body().lattice.cell(i);
+    const Cell c = cut.body().on_lattice()->lattice.cell(i);
     if (c[0] >= 8) {
       v[i] = 5;
       continue;
     }
-    const std::size_t j = half.body().lattice.index(c);
+    const std::size_t j = half.body().on_lattice()->lattice.index(c);
     v[i] = u[j];
     v[n + i] = u[m + j];
   }
   const State2 force = force_of(cut, v), expected = force_of(half, u);
   for (const std::size_t i : cut.body().points) {
-    const Cell c = cut.body().lattice.cell(i);
-    const std::size_t j = half.body().lattice.index(c[0] < 8 ? c : Cell{c[0] - 8, c[1], 0});
+    const Cell c = cut.body().on_lattice()->lattice.cell(i);
+    const std::size_t j = half.body().on_lattice()->lattice.index(c[0] < 8 ? c : Cell{c[0] - 8, c[1], 0});
     const double fx = c[0] < 8 ? expected[j] : 0, fy = c[0] < 8 ? expected[m + j] : 0;
     EXPECT_NEAR(force[i], fx,
                 1e-12 * largest(expected));  // the same operations on other vectors: 3e-15 measured

@@ -25,6 +25,7 @@ class DoubleWell final : public Model {
     const double x = u[1], pull = u[0] - x;
     return x * x * (x - 2) * (x - 2) + pull * pull / 2;
   }
+  [[nodiscard]] bool conservative() const override { return true; }
   void mass(std::span<double> mass) const override { mass[0] = mass[1] = 1; }
   void stiffness_bound(std::span<const double>, std::span<double> bound) override {
     bound[0] = 2;

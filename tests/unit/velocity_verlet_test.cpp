@@ -22,9 +22,9 @@ struct History : Observer {
     time.push_back(state.parameter);
     reaction.push_back(constraints.reaction(6));
     Point sum{};
-    for (std::size_t i = 0; i < membrane.body().lattice.size(); ++i)
+    for (std::size_t i = 0; i < membrane.body().size(); ++i)
       for (std::size_t a = 0; a < 2; ++a) {
-        const std::size_t e = a * membrane.body().lattice.size() + i;
+        const std::size_t e = a * membrane.body().size() + i;
         if (constraints.is_free(e)) sum[a] += mass[e] * state.v[e];
       }
     for (std::size_t c = 0; c < membrane.body().defects.inclusions.size(); ++c)
@@ -54,15 +54,15 @@ struct Problem {
     const LoadFunction push = [](const Point&, double t) {
       return 0.04 * std::pow(std::sin(M_PI * t / 0.6), 2);
     };
-    const std::size_t n = membrane.body().lattice.size();
+    const std::size_t n = membrane.body().size();
     for (const std::size_t i : membrane.body().points)
-      if (membrane.body().lattice.cell(i)[0] == 0)
+      if (membrane.body().on_lattice()->lattice.cell(i)[0] == 0)
         for (const std::size_t a : {0U, 1U})
           constraints.add({.slave = a * n + i,
                            .master = Constraint::kNone,
                            .sign = 1,
                            .terms = {{a == 0 ? push : [](const Point&, double) { return 0.0; },
-                                      membrane.body().lattice.position(i), static_cast<int>(a), 1, 6}}});
+                                      membrane.body().position(i), static_cast<int>(a), 1, 6}}});
   }
   State solve(const VelocityVerletSettings& settings) {
     return march(membrane, constraints, settings, history);

@@ -20,7 +20,7 @@ Errors uniaxial_errors(const LawCase& law, int points, double stretch) {
   Constraints constraints = constrain(membrane, uniaxial());
   Observer silent;
   const State state = relax(membrane, constraints, {.targets = {stretch}, .tolerance = 1e-6}, silent);
-  const Lattice& lattice = membrane.body().lattice;
+  const Lattice& lattice = membrane.body().on_lattice()->lattice;
   const auto uy = [&](int j) { return state.u[lattice.size() + lattice.index({points / 2, j, 0})]; };
   const double lateral = 1 + (uy(points - 1) - uy(0)) * points / (points - 1);
   const InvariantEnergy e = law.at(stretch * stretch + 2 / stretch, 2 * stretch + 1 / (stretch * stretch));

@@ -1,0 +1,47 @@
+#include "body/body.hpp"
+
+#include <algorithm>
+
+namespace riven {
+
+Point Body::position(std::size_t point) const {
+  const LatticeBonds* on = on_lattice();
+  return on != nullptr ? on->lattice.position(point) : std::get<ListedBonds>(bonds).position[point];
+}
+
+std::span<const InterfaceBond> Body::interface_of(std::size_t point) const {
+  const auto [first, last] =
+      std::equal_range(interface.begin(), interface.end(), InterfaceBond{point, 0, 0, {}},
+                       [](const InterfaceBond& a, const InterfaceBond& b) { return a.point < b.point; });
+  return {first, last};
+}
+
+std::size_t Body::family_size(std::size_t point) const {
+  std::size_t size = interface_of(point).size();
+  for_each_neighbour(point, [&](std::size_t) { ++size; });
+  return size;
+}
+
+double Body::face_area(std::size_t face) const {
+  double area = thickness;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(dimension); ++axis)
+    if (axis != face / 2) area *= faces[2 * axis + 1] - faces[2 * axis];
+  return area;
+}
+
+std::size_t Body::bytes() const {
+  std::size_t sum = size() * (sizeof(PointKind) + sizeof(double) + sizeof(std::uint16_t)) + size() / 8 +
+                    points.size() * sizeof(std::size_t) + interface.size() * sizeof(InterfaceBond);
+  if (const LatticeBonds* on = on_lattice()) return sum + size() * on->stencil.size() / 8;
+  const auto& list = std::get<ListedBonds>(bonds);
+  return sum + size() * (sizeof(Point) + sizeof(std::size_t)) + list.neighbour.size() * sizeof(std::uint32_t);
+}
+
+Point reflected(const Body& body, const Faces& at, const Point& x) {
+  Point image = x;
+  for (std::size_t face = 0; face < at.size(); ++face)
+    if (at.test(face)) image[face / 2] = 2 * body.faces[face] - image[face / 2];
+  return image;
+}
+
+}  // namespace riven

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstdint>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "body/bond_planes.hpp"
+#include "body/stencil.hpp"
+#include "geometry/defects.hpp"
+#include "geometry/lattice.hpp"
+
+namespace riven {
+
+/// Outer faces of a box, in the order of their names left, right, bottom, top, back, front.
+inline constexpr std::array<const char*, 6> kFaceNames = {"left", "right", "bottom", "top", "back", "front"};
+using Faces = std::bitset<6>;  // face 2 a is the lower one of axis a, 2 a + 1 the upper one
+
+enum class PointKind : std::uint8_t {
+  outside,  // no material
+  body,     // material point
+  rigid,    // part of a rigid inclusion: carries no energy
+  ghost,    // mirror image of a body point behind a face
+};
+
+/// A ghost point, the body point it mirrors, and the faces it is mirrored at (at most one per axis).
+struct GhostPoint {
+  std::size_t point = 0;
+  std::size_t master = 0;
+  Faces faces;
+};
+
+/// A bond that ends on the surface of a rigid inclusion instead of at the point behind it.
+struct InterfaceBond {
+  std::size_t point = 0;      // body end
+  std::size_t neighbour = 0;  // the point behind the surface
+  std::size_t inclusion = 0;
+  Point end{};  // on the surface, undeformed (m)
+};
+
+/// Points of a uniform lattice: neighbour k of point i is i + shift[k], and a bond is one bit.
+struct LatticeBonds {
+  Lattice lattice;
+  Stencil stencil;
+  BondPlanes bonds;
+};
+
+/// Points anywhere: their positions (m), and the neighbours of point i in [begin[i], begin[i + 1]),
+/// ascending.
+struct ListedBonds {
+  std::vector<Point> position;
+  std::vector<std::size_t> begin;
+  std::vector<std::uint32_t> neighbour;
+};
+
+/// Material points with bonds between them, on a lattice or listed. Fields have `size()` entries: one per
+/// stored point, ghosts and padding included.
+struct Body {
+  int dimension = 2;
+  double spacing = 0;           // m; of listed points a mean
+  double horizon = 0;           // m
+  double thickness = 1;         // m in 2D, cross-section in m^2 in 1D, 1 in 3D
+  std::array<double, 6> faces;  // coordinate of each outer face along its axis (m)
+  Defects defects;
+  std::vector<PointKind> kind;
+  std::vector<double> volume;               // m^3; 0 unless body
+  std::vector<std::uint16_t> whole_family;  // bonds of a body point if no crack had cut any
+  std::vector<bool> complete;               // nothing is missing in a body point's family
+  std::vector<std::size_t> points;          // body points in storage order
+  std::vector<GhostPoint> ghosts;
+  std::vector<InterfaceBond> interface;                // sorted by point
+  std::vector<std::vector<std::size_t>> rigid_points;  // of each inclusion
+  std::variant<LatticeBonds, ListedBonds> bonds;       // body-body and body-ghost
+
+  [[nodiscard]] std::size_t size() const { return kind.size(); }
+  [[nodiscard]] const LatticeBonds* on_lattice() const { return std::get_if<LatticeBonds>(&bonds); }
+  /// Undeformed position (m) of a stored point.
+  [[nodiscard]] Point position(std::size_t point) const;
+  /// Bonds of a point that end on inclusions.
+  [[nodiscard]] std::span<const InterfaceBond> interface_of(std::size_t point) const;
+  /// Bonds of a point, those to inclusions included.
+  [[nodiscard]] std::size_t family_size(std::size_t point) const;
+  /// Reference area (m^2) of an outer face.
+  [[nodiscard]] double face_area(std::size_t face) const;
+  /// Memory of bonds, kinds and volumes (bytes).
+  [[nodiscard]] std::size_t bytes() const;
+
+  /// Calls visit(neighbour) for the bonds of a stored point to other stored points.
+  template <class Visit>
+  void for_each_neighbour(std::size_t point, const Visit& visit) const {
+    if (const LatticeBonds* on = on_lattice()) {
+      for (std::size_t k = 0; k < on->stencil.size(); ++k)
+        if (on->bonds.exists(k, point)) visit(BondPlanes::neighbour(on->stencil, k, point));
+      return;
+    }
+    const auto& list = std::get<ListedBonds>(bonds);
+    for (std::size_t b = list.begin[point]; b < list.begin[point + 1]; ++b)
+      visit(std::size_t{list.neighbour[b]});
+  }
+};
+
+/// x reflected at some of the body's faces.
+Point reflected(const Body& body, const Faces& at, const Point& x);
+
+}  // namespace riven

@@ -1,0 +1,138 @@
+#include "peridynamics/point_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/error.hpp"
+
+namespace riven {
+
+namespace {
+
+Eigen::Vector2d plane(const Point& p) {
+  return {p[0], p[1]};
+}
+
+}  // namespace
+
+PointModel::PointModel(Body body, double density) : body_(std::move(body)), density_(density) {
+  for (const Shape& shape : body_.defects.inclusions) {
+    Inclusion inclusion;
+    double area = 0;
+    if (const auto* disc = std::get_if<Disc>(&shape)) {
+      inclusion.center = plane(disc->center);
+      inclusion.gyration = disc->radius / std::sqrt(2.0);
+      area = std::numbers::pi * disc->radius * disc->radius;
+    } else if (const auto* box = std::get_if<Box>(&shape)) {
+      inclusion.center = plane(box->center);
+      inclusion.gyration = std::hypot(box->half_size[0], box->half_size[1]) / std::sqrt(3.0);
+      area = 4 * box->half_size[0] * box->half_size[1];
+    }
+    if (body_.dimension != 2 || area == 0)
+      throw InputError("an inclusion is a disc or a box in two dimensions");
+    inclusion.mass = density_ * area * body_.thickness;
+    inclusions_.push_back(inclusion);
+  }
+  surface_.assign(body_.interface.size(), Eigen::Vector2d::Zero());
+}
+
+std::size_t PointModel::dofs() const {
+  return inclusion_dof(inclusions_.size());
+}
+
+std::size_t PointModel::inclusion_dof(std::size_t inclusion) const {
+  return static_cast<std::size_t>(body_.dimension) * body_.size() + 3 * inclusion;
+}
+
+Eigen::Vector2d PointModel::arm(const InterfaceBond& bond) const {
+  return plane(bond.end) - inclusions_[bond.inclusion].center;
+}
+
+void PointModel::place_inclusions(std::span<const double> u) {
+  for (std::size_t c = 0; c < inclusions_.size(); ++c)
+    inclusions_[c].rotation = Eigen::Rotation2Dd(u[inclusion_dof(c) + 2] / inclusions_[c].gyration);
+  for (std::size_t n = 0; n < surface_.size(); ++n) {
+    const std::size_t dof = inclusion_dof(body_.interface[n].inclusion);
+    const Eigen::Vector2d from = arm(body_.interface[n]);
+    surface_[n] = Eigen::Vector2d(u[dof], u[dof + 1]) +
+                  inclusions_[body_.interface[n].inclusion].rotation * from - from;
+  }
+}
+
+void PointModel::push_inclusion(End surface, const Eigen::Vector2d& pull, std::span<double> force) const {
+  const InterfaceBond& bond = body_.interface[surface - body_.size()];
+  const Inclusion& inclusion = inclusions_[bond.inclusion];
+  const std::size_t dof = inclusion_dof(bond.inclusion);
+  const Eigen::Vector2d lever = inclusion.rotation * arm(bond);
+  force[dof] += pull.x();
+  force[dof + 1] += pull.y();
+  force[dof + 2] += (lever.x() * pull.y() - lever.y() * pull.x()) / inclusion.gyration;
+}
+
+void PointModel::add_row(End end, double row, std::span<double> bound) const {
+  if (!is_surface(end)) {
+    for (int axis = 0; axis < body_.dimension; ++axis)
+      bound[static_cast<std::size_t>(axis) * body_.size() + end] += row;
+    return;
+  }
+  const InterfaceBond& bond = body_.interface[end - body_.size()];
+  const std::size_t dof = inclusion_dof(bond.inclusion);
+  const double lever = arm(bond).norm() / inclusions_[bond.inclusion].gyration;
+  // The bond's end moves by the translation and by the lever times the rotation's entry: each row has both.
+  bound[dof] += row * (1 + lever);
+  bound[dof + 1] += row * (1 + lever);
+  bound[dof + 2] += row * lever * (1 + lever);
+}
+
+void PointModel::mass(std::span<double> mass) const {
+  std::fill(mass.begin(), mass.end(), 0.0);
+  for (int axis = 0; axis < body_.dimension; ++axis)
+    for (const std::size_t i : body_.points)
+      mass[static_cast<std::size_t>(axis) * body_.size() + i] = density_ * body_.volume[i];
+  for (std::size_t c = 0; c < inclusions_.size(); ++c)
+    for (std::size_t d = 0; d < 3; ++d) mass[inclusion_dof(c) + d] = inclusions_[c].mass;
+}
+
+void PointModel::move(std::span<double> u, const std::array<std::array<double, 3>, 3>& gradient,
+                      const Point& shift) const {
+  const auto displacement = [&](const Point& x, std::size_t axis) {
+    return shift[axis] + gradient[axis][0] * x[0] + gradient[axis][1] * x[1] + gradient[axis][2] * x[2];
+  };
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(body_.dimension); ++axis) {
+    for (const std::size_t i : body_.points)
+      u[axis * body_.size() + i] += displacement(body_.position(i), axis);
+    for (std::size_t c = 0; c < inclusions_.size(); ++c)
+      u[inclusion_dof(c) + axis] +=
+          displacement({inclusions_[c].center.x(), inclusions_[c].center.y(), 0}, axis);
+  }
+}
+
+std::vector<Point> PointModel::positions() const {
+  std::vector<Point> positions;
+  for (const std::size_t i : body_.points) positions.push_back(body_.position(i));
+  for (const auto& inclusion : body_.rigid_points)
+    for (const std::size_t i : inclusion) positions.push_back(body_.position(i));
+  return positions;
+}
+
+std::vector<Point> PointModel::displacements(std::span<const double> u) const {
+  std::vector<Point> displacements;
+  for (const std::size_t i : body_.points) {
+    Point& d = displacements.emplace_back();
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(body_.dimension); ++axis)
+      d[axis] = u[axis * body_.size() + i];
+  }
+  for (std::size_t c = 0; c < inclusions_.size(); ++c) {
+    const std::size_t dof = inclusion_dof(c);
+    const Eigen::Rotation2Dd rotation(u[dof + 2] / inclusions_[c].gyration);
+    for (const std::size_t i : body_.rigid_points[c]) {
+      const Eigen::Vector2d from = plane(body_.position(i)) - inclusions_[c].center;
+      const Eigen::Vector2d d = Eigen::Vector2d(u[dof], u[dof + 1]) + rotation * from - from;
+      displacements.push_back({d.x(), d.y(), 0});
+    }
+  }
+  return displacements;
+}
+
+}  // namespace riven

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "body/body.hpp"
+#include "model/model.hpp"
+
+namespace riven {
+
+/// A model whose state is the displacement of a body's points and of the rigid inclusions in it.
+///
+/// A state holds u_x of all stored points, then u_y (and u_z), then for each inclusion its translation (2)
+/// and its rotation angle times its radius of gyration (m). Entries of ghost points are inputs, set by the
+/// loads.
+class PointModel : public Model {
+ public:
+  [[nodiscard]] std::size_t dofs() const override;
+  void mass(std::span<double> mass) const override;
+  [[nodiscard]] double spacing() const override { return body_.spacing; }
+  void move(std::span<double> u, const std::array<std::array<double, 3>, 3>& gradient,
+            const Point& shift) const override;
+  [[nodiscard]] std::vector<Point> positions() const override;
+  [[nodiscard]] std::vector<Point> displacements(std::span<const double> u) const override;
+  [[nodiscard]] std::size_t points() const override { return body_.points.size(); }
+
+  [[nodiscard]] const Body& body() const { return body_; }
+  /// First of the three entries of an inclusion in a state.
+  [[nodiscard]] std::size_t inclusion_dof(std::size_t inclusion) const;
+  /// Memory that body and model hold, without state vectors (bytes).
+  [[nodiscard]] virtual std::size_t bytes() const = 0;
+
+ protected:
+  /// `density` in kg/m^3, of the inclusions too. Throws InputError unless the inclusions are discs or boxes
+  /// of a two-dimensional body.
+  PointModel(Body body, double density);
+
+  /// What a bond ends on: a stored point, or behind those the surface point of an interface bond.
+  using End = std::uint32_t;
+  [[nodiscard]] End end_of(std::size_t interface_bond) const {
+    return static_cast<End>(body_.size() + interface_bond);
+  }
+  [[nodiscard]] bool is_surface(End end) const { return end >= body_.size(); }
+
+  /// Places the surface points of all inclusions where a state has them; `displacement` then uses them.
+  void place_inclusions(std::span<const double> u);
+  [[nodiscard]] Eigen::Vector2d displacement(End end, std::span<const double> u) const {
+    if (is_surface(end)) return surface_[end - body_.size()];
+    return {u[end], u[body_.size() + end]};
+  }
+  /// Adds a force (N) on a surface point to the force on its inclusion.
+  void push_inclusion(End surface, const Eigen::Vector2d& pull, std::span<double> force) const;
+  /// Adds a row bound (N/m) of a bond's end to that of the entries that move it.
+  void add_row(End end, double row, std::span<double> bound) const;
+
+ private:
+  struct Inclusion {
+    Eigen::Vector2d center;
+    double gyration = 0;             // radius of gyration (m)
+    double mass = 0;                 // kg
+    Eigen::Rotation2Dd rotation{0};  // of the state placed last
+  };
+
+  /// From the inclusion's centre to a surface point (m).
+  [[nodiscard]] Eigen::Vector2d arm(const InterfaceBond& bond) const;
+
+  Body body_;
+  double density_ = 0;
+  std::vector<Inclusion> inclusions_;
+  std::vector<Eigen::Vector2d> surface_;  // displacements of the surface points (m)
+};
+
+}  // namespace riven
