@@ -45,10 +45,10 @@ void print_model(const Simulation& simulation) {
                                 : fmt::format("of {} cells, spacing", fmt::join(on->lattice.cells(), " x "));
   fmt::print("# body: {} points {} {:.6g} m, volume {:.6g} m^3, {} ghost points behind loaded edges\n",
              model.points(), cells, body.spacing, volume, body.ghosts.size());
-  fmt::print(
-      "# bonds: {} directed, {}, within the horizon of {:g} spacings\n", model.bonds(),
-      on == nullptr ? std::string("listed") : fmt::format("{} neighbours on the lattice", on->stencil.size()),
-      body.horizon / body.spacing);
+  const std::string neighbours =
+      on == nullptr ? std::string("listed") : fmt::format("{} neighbours", on->stencil.size());
+  fmt::print("# bonds: {} directed, {} within the horizon of {:g} spacings\n", model.bonds(), neighbours,
+             body.horizon / body.spacing);
   for (const std::string& line : model.describe()) fmt::print("# {}\n", line);
   print_sets(simulation);
 }
