@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -25,6 +26,18 @@ inline void store(double* to, Lanes lanes) {
 
 inline Lanes broadcast(double value) {
   return Lanes{} + value;
+}
+
+inline double square_root(double value) {
+  return std::sqrt(value);
+}
+inline Lanes square_root(Lanes value) {
+  for (std::size_t l = 0; l < kLanes; ++l) value[l] = std::sqrt(value[l]);
+  return value;
+}
+
+inline Lanes select(LaneMask mask, Lanes value) {
+  return mask ? value : Lanes{};
 }
 
 /// Lane l is true where bit l is set.

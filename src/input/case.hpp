@@ -50,9 +50,13 @@ struct SetInput {  // [set.NAME]: exactly one of where and a shape
   Location at;
 };
 
-struct ModelInput {  // [model]
-  std::string kind = "membrane";
-  double stabilisation = 4;  // factor G of the stabilisation energy; 0 switches it off
+struct ModelInput {               // [model]
+  std::string kind = "membrane";  // or "membrane-bond"
+  double stabilisation = 4;       // membrane: factor G of the stabilisation energy; 0 switches it off
+  // membrane-bond
+  std::string loading;                    // "equibiaxial", "planar", "uniaxial", "uniaxial-compression"
+  std::string variant;                    // "published" or "zero-residual"
+  std::string surface_correction = "on";  // or "off"
   Location at;
 };
 

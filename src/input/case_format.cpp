@@ -130,12 +130,32 @@ Format describe(SetInput& set, const Case& c) {
 // ---- model and material ----
 
 Format describe(ModelInput& model) {
-  return {.doc = "How points interact.",
-          .at = &model.at,
-          .keys = {Key{"kind", Text{&model.kind, {"membrane"}}, "The model."}.otherwise("\"membrane\""),
-                   Key{"stabilisation", Quantity{&model.stabilisation, dimension::none, not_negative},
-                       "Factor of the stabilisation energy; 0 switches it off."}
-                       .otherwise("4")}};
+  const auto kind = [&model](const char* name) { return When{"kind", &model.kind, {name}}; };
+  return {
+      .doc = "How points interact.",
+      .at = &model.at,
+      .keys = {
+          Key{"kind", Text{&model.kind, {"membrane", "membrane-bond"}},
+              "`membrane`: state-based, for any loading and law, the one to use. `membrane-bond`: the "
+              "published bond-based one, to compare with."}
+              .otherwise("\"membrane\""),
+          Key{"stabilisation", Quantity{&model.stabilisation, dimension::none, not_negative},
+              "Factor of the stabilisation energy; 0 switches it off."}
+              .otherwise("4")
+              .applies(kind("membrane")),
+          Key{"loading", Text{&model.loading, {"equibiaxial", "planar", "uniaxial", "uniaxial-compression"}},
+              "The loading that the bonds' law was fitted to; it holds for this one only."}
+              .applies(kind("membrane-bond"))
+              .required(),
+          Key{"variant", Text{&model.variant, {"published", "zero-residual"}},
+              "Constants of the bonds: as published, or fitted so that bonds at rest have no force."}
+              .applies(kind("membrane-bond"))
+              .required(),
+          Key{"surface_correction", Text{&model.surface_correction, {"on", "off"}},
+              "Whether bonds are scaled so that each point has the local energy at stretch 4 (for "
+              "compression: 0.5)."}
+              .otherwise("\"on\"")
+              .applies(kind("membrane-bond"))}};
 }
 
 Format describe(MaterialInput& m, const Case& c) {
@@ -245,20 +265,20 @@ Format describe(SolverInput& s) {
 
 Format describe(OutputInput& output, const Case& c) {
   const auto time = [](std::optional<double>& to) { return Quantity{&to, dimension::time, positive}; };
-  return {
-      .doc = "What is written. Dynamic relaxation writes at each stretch.",
-      .at = &output.at,
-      .keys = {
-          Key{"every", time(output.every), "Time between output states; start and end only unless given."}
-              .applies(method(c, verlet)),
-          Key{"history_every", time(output.history_every),
-              "Time between rows of the history; `every` unless given."}
-              .applies(method(c, verlet)),
-          Key{"fields",
-              Texts{&output.fields,
-                    {"displacement", "damage", "strain_energy_density", "nominal_stress", "weight_minimum"}},
-              "Fields of the output states."}
-              .otherwise(R"(["displacement", "damage", "strain_energy_density", "nominal_stress"])")}};
+  return {.doc = "What is written. Dynamic relaxation writes at each stretch.",
+          .at = &output.at,
+          .keys = {
+              Key{"every", time(output.every), "Time between output states; start and end only unless given."}
+                  .applies(method(c, verlet)),
+              Key{"history_every", time(output.history_every),
+                  "Time between rows of the history; `every` unless given."}
+                  .applies(method(c, verlet)),
+              Key{"fields",
+                  Texts{&output.fields,
+                        {"displacement", "damage", "strain_energy_density", "nominal_stress",
+                         "weight_minimum", "surface_correction"}},
+                  "Fields of the output states; weight_minimum: membrane, surface_correction: membrane-bond."}
+                  .otherwise(R"(["displacement", "damage", "strain_energy_density", "nominal_stress"])")}};
 }
 
 Format describe(ProbeInput& p, const Case& c) {

@@ -49,7 +49,7 @@ void Constraints::reduce(std::span<double> force) {
     force[constraint.slave] = 0;
   };
   for (std::size_t m = 0; m < mirrored_.size(); ++m) {
-    force[mirrored_[m].master] += mirrored_[m].sign * force[mirrored_[m].slave];
+    if (mirrored_[m].chain_rule) force[mirrored_[m].master] += mirrored_[m].sign * force[mirrored_[m].slave];
     take(mirrored_[m], prescribed_.size() + m);
   }
   for (std::size_t p = 0; p < prescribed_.size(); ++p) take(prescribed_[p], p);
@@ -63,7 +63,7 @@ double Constraints::external_force(std::size_t dof) const {
 
 void Constraints::fold(std::span<double> bound) const {
   for (const Constraint& constraint : mirrored_) {
-    bound[constraint.master] += bound[constraint.slave];
+    if (constraint.chain_rule) bound[constraint.master] += bound[constraint.slave];
     bound[constraint.slave] = 0;
   }
   for (const Constraint& constraint : prescribed_) bound[constraint.slave] = 0;

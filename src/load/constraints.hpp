@@ -33,6 +33,7 @@ struct Constraint {
   std::size_t master = kNone;
   double sign = 1;
   std::vector<PrescribedTerm> terms;
+  bool chain_rule = true;  // the slave's force acts on its master too, so that force stays a gradient
 };
 
 /// Displacement change of the prescribed places between two parameters, fitted by du_i = gradient_ij X_j +
@@ -54,8 +55,8 @@ class Constraints {
   void set_parameter(double parameter);
   /// Makes a state obey the constraints.
   void apply(std::span<double> u) const;
-  /// Takes the internal force out of the slaves: adds it to their masters by the chain rule, keeps what the
-  /// constraints must supply (reactions), and leaves 0 there.
+  /// Takes the internal force out of the slaves: adds it to their masters where the chain rule holds, keeps
+  /// what the constraints must supply (reactions), and leaves 0 there.
   void reduce(std::span<double> force);
   /// Adds a slave's row bound to its master's and leaves 0 at slaves: the bound of the constrained system.
   void fold(std::span<double> bound) const;

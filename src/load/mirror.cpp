@@ -23,10 +23,11 @@ std::vector<std::size_t> reflection_order(const Faces& faces, std::size_t compon
 }  // namespace
 
 void add_mirror_constraints(const Body& body, const std::array<std::optional<FaceLoad>, 6>& faces,
-                            Constraints& constraints) {
+                            bool chain_rule, Constraints& constraints) {
   for (const GhostPoint& ghost : body.ghosts) {
     for (std::size_t component = 0; component < static_cast<std::size_t>(body.dimension); ++component) {
       Constraint constraint;
+      constraint.chain_rule = chain_rule;
       constraint.slave = component * body.size() + ghost.point;
       constraint.master = component * body.size() + ghost.master;
       Point x = body.position(ghost.point);

@@ -22,10 +22,6 @@ const double* at(const double* plane, std::size_t i, std::ptrdiff_t shift = 0) {
   return plane + static_cast<std::ptrdiff_t>(i) + shift;
 }
 
-Lanes select(LaneMask mask, Lanes value) {
-  return mask ? value : Lanes{};
-}
-
 struct Vector {
   Lanes x, y;
 };

@@ -6,6 +6,7 @@
 
 #include "body/lattice_body.hpp"
 #include "load/mirror.hpp"
+#include "peridynamics/bond_membrane.hpp"
 #include "peridynamics/membrane.hpp"
 #include "simulation/preflight.hpp"
 #include "simulation/simulation.hpp"
@@ -151,9 +152,19 @@ LoadFunction make_function(const Expression& expression, Parameter parameter) {
   };
 }
 
-std::unique_ptr<Membrane> make_model(const Case& in, Body body) {
+BondMembraneSettings bond_settings(const ModelInput& in) {
+  Loading loading = Loading::equibiaxial;
+  if (in.loading == "planar") loading = Loading::planar;
+  if (in.loading == "uniaxial") loading = Loading::uniaxial;
+  if (in.loading == "uniaxial-compression") loading = Loading::uniaxial_compression;
+  return {loading, in.variant == "zero-residual", in.surface_correction == "on"};
+}
+
+std::unique_ptr<PointModel> make_model(const Case& in, Body body) {
   const Material material = make_material(in.materials.front());
   try {
+    if (in.model.kind == "membrane-bond")
+      return std::make_unique<BondMembrane>(std::move(body), material, bond_settings(in.model));
     return std::make_unique<Membrane>(std::move(body), material, in.model.stabilisation);
   } catch (const InputError& error) {
     throw InputError(in.model.at, std::string("model: ") + error.what());
@@ -163,7 +174,7 @@ std::unique_ptr<Membrane> make_model(const Case& in, Body body) {
 /// Turns loads into constraints on the state of the model.
 class LoadBuilder {
  public:
-  LoadBuilder(Simulation& simulation, const Membrane& model)
+  LoadBuilder(Simulation& simulation, const PointModel& model)
       : simulation_(simulation), model_(model), body_(model.body()), loaded_(model.dofs(), false) {}
 
   void build() {
@@ -176,7 +187,7 @@ class LoadBuilder {
         }
       }
     for (std::size_t face = 0; face < kFaces; ++face) check_face(face);
-    add_mirror_constraints(body_, faces_, *simulation_.constraints);
+    add_mirror_constraints(body_, faces_, model_.conservative(), *simulation_.constraints);
     hold_fixed_inclusions();
   }
 
@@ -241,7 +252,7 @@ class LoadBuilder {
   }
 
   Simulation& simulation_;
-  const Membrane& model_;
+  const PointModel& model_;
   const Body& body_;
   std::array<std::optional<FaceLoad>, kFaces> faces_;
   std::array<Location, kFaces> face_at_;

@@ -109,6 +109,19 @@ void check_step(const Simulation& simulation) {
                                *solver.step, limit));
 }
 
+/// Every field asked for must be one that the model has.
+void check_fields(const Simulation& simulation) {
+  const std::vector<double> rest(simulation.model->dofs(), 0.0);
+  std::vector<std::string> names = {"displacement"};
+  for (const ModelField& field : simulation.model->fields(rest)) names.push_back(field.name);
+  const OutputInput& output = simulation.input.output;
+  for (const std::string& field : output.fields)
+    if (std::find(names.begin(), names.end(), field) == names.end())
+      throw InputError(output.at,
+                       fmt::format("output.fields: the model \"{}\" has no field \"{}\"; it has {}",
+                                   simulation.input.model.kind, field, listed(names)));
+}
+
 /// Whether the loads displace the body before they have begun.
 bool jumps_at_start(const Simulation& simulation) {
   std::vector<double> u(simulation.model->dofs(), 0.0);
@@ -162,6 +175,7 @@ std::size_t drop_unreached_expectations(Case& input) {
 
 void check_before_run(const Simulation& simulation, const Probes& probes) {
   check_step(simulation);
+  check_fields(simulation);
   const Case& input = simulation.input;
   for (const ExpectInput& expect : input.expects) {
     if (expect.state && !reaches(input, *expect.state)) fail_state(input, expect, *expect.state);
@@ -182,7 +196,7 @@ std::vector<std::string> warnings(const Simulation& simulation) {
         "the horizon is {:.3g} spacings: families of so few directions are stiff along the lattice; 3 "
         "is usual",
         ratio));
-  if (simulation.input.model.stabilisation < 1)
+  if (simulation.input.model.kind == "membrane" && simulation.input.model.stabilisation < 1)
     list.emplace_back(
         "with a stabilisation below 1 rows of points fold over one another beside defects and under "
         "compression");

@@ -132,9 +132,13 @@ Summary run_case(const Case& input, const RunOptions& options) {
   Summary summary = summary_of(recorder, simulation, status, options, seconds_since(start));
   try_to([&] { write_summary(folder.summary(), summary); });
   summary.status = status;
-  log.info(fmt::format("{} in {:.1f} s, {} force evaluations, {:.0f} million bonds/s, energy balance {:.1e}",
-                       name(status), summary.timing.wall_s, recorder.evaluations(),
-                       1e-6 * summary.timing.bond_evaluations_per_second, summary.energy.balance_error));
+  const std::string balance =
+      simulation.model->conservative()
+          ? fmt::format("energy balance {:.1e}", summary.energy.balance_error)
+          : std::string("no energy balance: this model's force is not the gradient of its energy");
+  log.info(fmt::format("{} in {:.1f} s, {} force evaluations, {:.0f} million bonds/s, {}", name(status),
+                       summary.timing.wall_s, recorder.evaluations(),
+                       1e-6 * summary.timing.bond_evaluations_per_second, balance));
   if (status == RunStatus::finished)
     log.info(fmt::format("results: {}/ (fields.pvd opens in ParaView; history.csv, summary.json)",
                          options.folder.string()));

@@ -45,9 +45,9 @@ inline FaceLoads uniaxial() {
   return edges([](double l) { return Eigen::Matrix2d{{l, 0}, {0, 1}}; }, Faces(0b0011), true);
 }
 
-inline Constraints constrain(const Membrane& membrane, const FaceLoads& loads) {
+inline Constraints constrain(const PointModel& membrane, const FaceLoads& loads) {
   Constraints constraints(membrane.dofs(), 7);
-  add_mirror_constraints(membrane.body(), loads, constraints);
+  add_mirror_constraints(membrane.body(), loads, membrane.conservative(), constraints);
   return constraints;
 }
 

@@ -48,7 +48,7 @@ inline double gyration_of(const Shape& inclusion) {
 
 /// y = F X + shift of everything; inclusions turn by the rotation of F, which is exact only where F is a
 /// rotation.
-inline State2 affine_state(const Membrane& membrane, const Eigen::Matrix2d& f,
+inline State2 affine_state(const PointModel& membrane, const Eigen::Matrix2d& f,
                            const Eigen::Vector2d& shift = Eigen::Vector2d::Zero()) {
   const Body& body = membrane.body();
   const std::size_t n = body.size();
