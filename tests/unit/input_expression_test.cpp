@@ -55,6 +55,7 @@ TEST(Formula, NumbersWithUnitsStandAnywhere) {
   EXPECT_DOUBLE_EQ(value("0.1 m/s * t + 1e-3 /s * t * x", dimension::length), 0.025 + 0.25e-3 * 0.1);
   EXPECT_DOUBLE_EQ(value("1 MPa * sign(y)", dimension::pressure), -1e6);
   EXPECT_DOUBLE_EQ(value("50 %", dimension::none), 0.5);
+  EXPECT_DOUBLE_EQ(value("abs (y)", dimension::length), 0.2);
   EXPECT_DOUBLE_EQ(value("0", dimension::pressure), 0);
   EXPECT_DOUBLE_EQ(value("t < 1 ms ? 0 : 2 MPa", dimension::pressure), 2e6);
 }
