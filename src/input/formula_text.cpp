@@ -99,6 +99,7 @@ void FormulaText::scan_number() {
       add({to_si(number, match->unit), match->unit.dimension});
       return;
     }
+    check_one_number(digits, next);
   } catch (const std::invalid_argument& wrong) {
     fail(next, wrong.what());
   }
@@ -123,6 +124,21 @@ void FormulaText::check_product(double number, std::size_t at) {
   if (name == "dx" || name == "horizon") fail_unknown(name, at);
   fail(at, fmt::format("unknown unit \"{}\"; units are {}{}", name, listed(unit_names()),
                        did_you_mean(name, unit_names())));
+}
+
+// "20 1/s": units that begin with a number are written so elsewhere.
+void FormulaText::check_one_number(const std::string& digits, std::size_t at) const {
+  if (!digit(character(at)) && character(at) != '.') return;
+  const std::size_t slash = after_spaces(at + 1);
+  if (character(at) == '1' && character(slash) == '/') {
+    if (const auto match = match_unit(text_, slash)) {
+      const std::string unit = text_.substr(slash, match->length);
+      const std::string under = unit.substr(1);
+      fail(at, fmt::format("a unit does not begin with a number; write \"{} {}\"{}", digits, unit,
+                           is_unit(under) ? fmt::format(" or \"{} {}^-1\"", digits, under) : ""));
+    }
+  }
+  fail(at, "two numbers stand side by side; expected a sign such as + or * between them");
 }
 
 // "3 dx^2" could be read in two ways.

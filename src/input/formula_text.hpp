@@ -52,6 +52,7 @@ class FormulaText {
   [[nodiscard]] std::optional<double> length_name(std::string_view name) const;
   [[nodiscard]] std::size_t after_spaces(std::size_t i) const;
   [[nodiscard]] char character(std::size_t i) const { return i < text_.size() ? text_[i] : '\0'; }
+  void check_one_number(const std::string& digits, std::size_t at) const;
   void check_not_a_power(std::string_view name);
   void check_product(double number, std::size_t at);
   [[noreturn]] void fail_unknown(std::string_view name, std::size_t at) const;

@@ -42,6 +42,8 @@ MISTAKES = [
     ("no unit", PLAIN, 'thickness = "10 mm"', "thickness = 10", "box =", 'write "10 mm"'),
     ("another dimension", PLAIN, '"6 MPa"', '"6 mm"', "youngs_modulus", "expected a pressure"),
     ("unknown unit", PLAIN, '"6 MPa"', '"6 Mpa"', "youngs_modulus", 'unknown unit "Mpa"'),
+    ("a unit that begins with 1", MOVING, "1e4 /s^2", "1e4 1/s^2", "displacement", 'write "1e4 /s^2"'),
+    ("two numbers", MOVING, "1e4 /s^2", "1e4 2 /s^2", "displacement", "two numbers stand side by side"),
     ("negative", PLAIN, '"6 MPa"', '"-6 MPa"', "youngs_modulus", "above 0"),
     ("no number", PLAIN, '"6 MPa"', "nan", "youngs_modulus", "finite"),
     ("unknown law", PLAIN, '"neo-hookean"', '"neohookean"', "law =", 'did you mean "neo-hookean"?'),
