@@ -83,12 +83,12 @@ struct Expression::Compiled {
   }
 };
 
-Expression::Expression(std::string written, std::string formula, const Location& at,
+Expression::Expression(std::string written, const std::string& formula, const Location& at,
                        std::vector<TableCall> tables) try
     : compiled_(std::make_shared<Compiled>(std::move(written), formula, at, std::move(tables))) {
 } catch (const mu::ParserError& error) {
   // muParser counts in the formula with SI numbers, which the user does not see.
-  const std::string message = error.GetMsg();
+  const std::string& message = error.GetMsg();
   throw InputError(
       at, "formula cannot be read: " + message.substr(0, std::min(message.find(" at position"),
                                                                   message.find(" at expression position"))));

@@ -31,7 +31,7 @@ class Expression {
  public:
   Expression() = default;
   /// `formula`: in SI units and muParser's language. Throws InputError at `at` when it does not parse.
-  Expression(std::string written, std::string formula, const Location& at,
+  Expression(std::string written, const std::string& formula, const Location& at,
              std::vector<TableCall> tables = {});
 
   /// Throws InputError when a table is asked for a value beyond its ends and does not hold it.

@@ -109,7 +109,8 @@ TableFunction read_table(const std::string& name, const std::filesystem::path& f
   const CsvTable csv = CsvTable::read(file);
   const Location header{csv.file(), csv.header_line()};
   if (csv.columns().size() < 2)
-    throw InputError(header, fmt::format("found one column, \"{}\"; expected an argument and a value",
+    throw InputError(header, fmt::format("found one column, \"{}\"; expected an argument and a value, with "
+                                         "a comma between them",
                                          csv.columns().front()));
   const std::size_t from = argument.empty() ? 0 : csv.column(argument);
   const std::size_t to = value.empty() ? 1 : csv.column(value);

@@ -122,6 +122,8 @@ TEST(TableFunction, RefusesWhatIsNoTable) {
            {"t,u\n# note\n0,0\n", "a.csv:1: found one row below the column names; expected two rows"},
            {"t,u\n", "a.csv:1: found no row"},
            {"t\n0\n1\n", "a.csv:1: found one column, \"t\"; expected an argument and a value"},
+           {"t;u\n0;0\n1;1\n",
+            "a.csv:1: found one column, \"t;u\"; expected an argument and a value, with a comma"},
            {"", "a.csv: expected a row of column names"},
            {"t,u\n0,0\n1,1\n1,2\n",
             "a.csv:4: column \"t\": 1 comes after 1; expected an argument that rises"},
