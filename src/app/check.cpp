@@ -34,6 +34,21 @@ void print_sets(const Simulation& simulation) {
   }
 }
 
+std::string range(const TableFunction::Column& column) {
+  const auto [least, most] = std::minmax_element(column.values.begin(), column.values.end());
+  const std::string span = fmt::format("{} {:g} to {:g}", without_unit(column.name), *least, *most);
+  return column.dimension == dimension::none ? span : fmt::format("{} {}", span, si_unit(column.dimension));
+}
+
+void print_tables(const Case& input) {
+  for (const TableInput& table : input.tables) {
+    const TableFunction& f = *table.function;
+    fmt::print("# table {}: {}, {} points, {}, {}; beyond its ends {}\n", table.name, f.file().string(),
+               f.argument().values.size(), range(f.argument()), range(f.value()),
+               f.holds() ? "it holds its first and last value" : "an error");
+  }
+}
+
 void print_model(const Simulation& simulation) {
   const Model& model = *simulation.model;
   const Body& body = *simulation.body;
@@ -90,6 +105,7 @@ int check(const Options& options) {
   check_before_run(simulation, probes);
   if (input.short_run) check_short(input, options.set);
   fmt::print("{}\n", resolved_case(input));
+  print_tables(input);
   print_model(simulation);
   print_cost(simulation);
   for (const HistoryColumn& column : probes.columns())

@@ -25,11 +25,20 @@ struct CompareOptions {
   bool json = false;
 };
 
+struct NewOptions {
+  std::filesystem::path file;  // empty: named after the kind
+  std::string kind = "membrane";
+  bool list = false;
+  bool force = false;
+};
+
 enum ExitCode : int { kDone = 0, kMissed = 1, kWrongInput = 2, kFailed = 3, kInterrupted = 130 };
 
 /// Runs a command; an exception becomes one message on standard error and the exit code that belongs to it.
 int guarded(const std::function<int()>& command);
 
+/// Writes a commented case to start from, and the files that it reads.
+int new_case(const NewOptions& options);
 int run(const Options& options);
 int check(const Options& options);
 int cases();

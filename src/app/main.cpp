@@ -74,6 +74,7 @@ class CommandLine {
   CommandLine() {
     program_.require_subcommand(1);
     program_.set_version_flag("--version", "riven " RIVEN_VERSION);
+    add_new();
     add_run();
     add_check();
     add("cases", "List the cases that ship with Riven", [] { return cases(); });
@@ -129,6 +130,15 @@ class CommandLine {
     return *command.add_option("case", options_.target, target);
   }
 
+  void add_new() {
+    CLI::App& command = add("new", "Write a commented case to start from: riven new CASE.toml",
+                            [this] { return new_case(new_); });
+    command.add_option("file", new_.file, "File to write (default: KIND.toml)");
+    command.add_option("--kind", new_.kind, "Which case (default: membrane)");
+    command.add_flag("--list", new_.list, "List the kinds");
+    command.add_flag("--force", new_.force, "Replace files that exist");
+  }
+
   void add_run() {
     CLI::App& command = add("run", "Run a case: riven run CASE.toml", [this] { return app::run(options_); });
     add_case(command, "Case file, or the name of a shipped case (riven cases)").required();
@@ -174,6 +184,7 @@ class CommandLine {
   CLI::App program_{"Riven: how rubber, glass and shells deform and break, by peridynamics", "riven"};
   std::string overview_;
   Options options_;
+  NewOptions new_;
   CompareOptions comparison_;
   bool brief_ = false, markdown_ = false;
   std::string topic_;  // of help

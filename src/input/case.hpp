@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,15 @@
 namespace riven {
 
 /// What the user wrote, parsed and checked, in SI units. `src/input/case_format.cpp` declares the format.
+
+struct TableInput {  // [table.NAME]: a function that formulas may call
+  std::string name;
+  std::string file;               // CSV, relative to the case file
+  std::string argument, value;    // its columns
+  std::string outside = "error";  // beyond the ends: "error", or "hold" the first and the last value
+  std::shared_ptr<const TableFunction> function;  // what the file holds
+  Location at;
+};
 
 struct LatticeInput {    // [geometry] box = {...} or disc = {...}
   Shape shape;           // the body; a box is centred at the origin unless `from` gives its lower corner
@@ -144,6 +154,7 @@ struct Case {
   std::filesystem::path file;
   std::string title;
   std::string source;
+  std::vector<TableInput> tables;
   GeometryInput geometry;
   std::vector<HoleInput> holes;
   std::vector<CrackInput> cracks;

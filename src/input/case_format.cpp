@@ -8,6 +8,7 @@
 #include "base/nearest_name.hpp"
 #include "input/format.hpp"
 #include "input/shape_format.hpp"
+#include "input/table_format.hpp"
 
 namespace riven {
 namespace {
@@ -430,6 +431,8 @@ Format describe(Case& c) {
       .doc = "A case: one text file in TOML that says all about one simulation.",
       .keys = {Key{"title", Text{&c.title}, "What the case shows."}.required(),
                Key{"source", Text{&c.source}, "Where the problem was published."}.otherwise("\"\""),
+               Key{"table", named_tables(c.tables, [&c](TableInput& t) { return describe(t, c); }),
+                   "Functions given by points."},
                Key{"geometry", Table{[&c] { return describe(c.geometry); }, always}, "The body."}.required(),
                Key{"hole", tables(c.holes, [&c](HoleInput& h, std::size_t) { return describe(h, c); }),
                    "Holes."},

@@ -72,7 +72,8 @@ bool follow(const FormulaText& formula, const Expression& plain, const Reading& 
   for (const double log2_scale : {40.0, -40.0}) {
     UnitScale scale;
     scale.*scale_members[base] = std::exp2(log2_scale);
-    const Expression scaled(formula.written(), formula.si(scale), plain.location());
+    const Expression scaled(formula.written(), formula.si(scale), plain.location(),
+                            formula.tables(scale, true));
     for (const Variables& sample : samples()) {
       Variables moved = sample;
       if (reading.scale_position)
@@ -100,12 +101,18 @@ std::optional<Powers> find_powers(const FormulaText& formula, const Expression& 
 Expression compile(const FormulaText& formula, const Origin& origin) {
   Location at = origin.at;
   try {
-    return {formula.written(), formula.si(), at};
+    return {formula.written(), formula.si(), at, formula.tables({}, false)};
   } catch (const InputError& error) {
     const std::string message = error.what();
     const std::size_t place = at.file.empty() ? 0 : at.text().size() + 2;
     origin.fail(fmt::format("\"{}\": {}", formula.written(), message.substr(place)));
   }
+}
+
+// What checks evaluate at places and times where tables may have no value, or only zeros.
+Expression for_checks(const FormulaText& formula, const Expression& expression) {
+  if (!formula.calls_tables()) return expression;
+  return {formula.written(), formula.si(), expression.location(), formula.tables({}, true)};
 }
 
 void check_finite_somewhere(const Expression& value, const Origin& origin) {
@@ -130,13 +137,13 @@ void check_dimension(const FormulaText& formula, const Expression& plain, const 
   if (!found)
     origin.fail(
         fmt::format("\"{}\" joins quantities that do not fit together, such as a length and a pressure, or a "
-                    "number without a unit; expected {}",
-                    text, named(wanted)));
-  if (*found == dimension::none) origin.fail(needs_unit(text, wanted));
+                    "number without a unit; expected {}{}",
+                    text, named(wanted), formula.what_tables_take()));
+  if (*found == dimension::none) origin.fail(needs_unit(text, wanted) + formula.what_tables_take());
   const std::string example =
       wanted == dimension::none ? "" : fmt::format(", such as \"10 {}\"", usual_unit(wanted));
-  origin.fail(fmt::format("\"{}\" is {} ({}); expected {}{}", text, named(*found), si_unit(*found),
-                          named(wanted), example));
+  origin.fail(fmt::format("\"{}\" is {} ({}); expected {}{}{}", text, named(*found), si_unit(*found),
+                          named(wanted), example, formula.what_tables_take()));
 }
 
 }  // namespace
@@ -157,34 +164,35 @@ Expression parse_formula(const std::string& text, const Dimension& dimension, co
                          const Origin& origin) {
   const FormulaText formula(text, symbols, origin);
   Expression expression = compile(formula, origin);
-  check_finite_somewhere(expression, origin);
-  check_dimension(formula, expression, dimension, origin);
+  if (!formula.calls_tables()) check_finite_somewhere(expression, origin);
+  check_dimension(formula, for_checks(formula, expression), dimension, origin);
   return expression;
 }
 
 Expression parse_condition(const std::string& text, const Symbols& symbols, const Origin& origin) {
   const FormulaText formula(text, symbols, origin);
   Expression expression = compile(formula, origin);
+  const Expression trial = for_checks(formula, expression);
   for (const Variables& sample : samples()) {
-    const double value = expression(sample);
+    const double value = trial(sample);
     if (value != 0 && value != 1)
       origin.fail(fmt::format(
           "\"{}\" is {} somewhere; expected true or false, such as \"abs(y) > 20 mm - dx\"", text, value));
   }
   // Here x, y and z are lengths for certain: "x > 20" is a forgotten unit.
-  const std::optional<Powers> powers = find_powers(formula, expression, {true, true});
+  const std::optional<Powers> powers = find_powers(formula, trial, {true, true});
   if (!powers || !powers->agree_with(dimension::none))
     origin.fail(fmt::format(
-        "\"{}\" compares quantities that do not fit together; x, y and z are lengths: write \"x > 20 mm\"",
-        text));
+        "\"{}\" compares quantities that do not fit together; x, y and z are lengths: write \"x > 20 mm\"{}",
+        text, formula.what_tables_take()));
   return expression;
 }
 
 Quantity parse_quantity(const std::string& text, const Symbols& symbols, const Origin& origin) {
   const FormulaText formula(text, symbols, origin);
   const Expression value = compile(formula, origin);
-  check_finite_somewhere(value, origin);
-  const std::optional<Powers> powers = find_powers(formula, value, {true, true});
+  if (!formula.calls_tables()) check_finite_somewhere(value, origin);
+  const std::optional<Powers> powers = find_powers(formula, for_checks(formula, value), {true, true});
   const std::optional<Dimension> found = powers ? powers->whole() : std::nullopt;
   if (!found) origin.fail(fmt::format("\"{}\" joins quantities that do not fit together", text));
   return {value(Variables{}), *found};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,6 +28,7 @@ struct Symbols {
   std::optional<double> dx;            // m; known once the body's lattice has been read
   std::optional<double> horizon;       // m
   std::vector<std::string> variables;  // of x, y, z, t, stretch
+  std::vector<std::shared_ptr<const TableFunction>> tables{};
 };
 
 /// A formula with units, such as "2 MPa * (1 - cos(2*pi*10*t))", whose result has the given dimension.
@@ -48,6 +50,9 @@ Quantity parse_quantity(const std::string& text, const Symbols& symbols, const O
 /// A constant formula of the given dimension: "20 mm - dx". A plain 0 has every dimension.
 double parse_quantity(const std::string& text, const Dimension& dimension, const Symbols& symbols,
                       const Origin& origin);
+
+/// What a name already means in a formula: "a function", "a unit"; empty for a new name.
+std::string meaning_in_formulas(const std::string& name);
 
 /// The message about a number without a unit: `10 has no unit; write "10 mm" (a length)`.
 std::string needs_unit(const std::string& number, const Dimension& dimension);

@@ -54,6 +54,23 @@ std::string FormulaText::si(const UnitScale& scale) const {
   return formula;
 }
 
+std::vector<TableCall> FormulaText::tables(const UnitScale& scale, bool stand_in) const {
+  std::vector<TableCall> calls;
+  for (const auto& table : tables_)
+    calls.push_back(
+        {table, scale.of(table->argument().dimension), scale.of(table->value().dimension), stand_in});
+  return calls;
+}
+
+std::string FormulaText::what_tables_take() const {
+  std::string text;
+  for (const auto& table : tables_)
+    text += fmt::format("; the table {} takes {} (\"{}\") and gives {} (\"{}\")", table->name(),
+                        named(table->argument().dimension), table->argument().name,
+                        named(table->value().dimension), table->value().name);
+  return text;
+}
+
 void FormulaText::scan() {
   while (position_ < text_.size()) {
     const char c = text_[position_];
@@ -82,6 +99,7 @@ void FormulaText::scan_number() {
       add({to_si(number, match->unit), match->unit.dimension});
       return;
     }
+    check_one_number(digits, next);
   } catch (const std::invalid_argument& wrong) {
     fail(next, wrong.what());
   }
@@ -100,11 +118,27 @@ void FormulaText::scan_number() {
 // A name stands after a number and is no unit.
 void FormulaText::check_product(double number, std::size_t at) {
   const std::string name(unit_word(text_, at));
-  if (contains(symbols_.variables, name) || contains(function_names(), name) || name == "pi")
+  if (contains(symbols_.variables, name) || contains(function_names(), name) || name == "pi" ||
+      contains(table_names(), name))
     fail(at, fmt::format("a product needs its sign: write \"{}*{}\"", number, name));
   if (name == "dx" || name == "horizon") fail_unknown(name, at);
   fail(at, fmt::format("unknown unit \"{}\"; units are {}{}", name, listed(unit_names()),
                        did_you_mean(name, unit_names())));
+}
+
+// "20 1/s": units that begin with a number are written so elsewhere.
+void FormulaText::check_one_number(const std::string& digits, std::size_t at) const {
+  if (!digit(character(at)) && character(at) != '.') return;
+  const std::size_t slash = after_spaces(at + 1);
+  if (character(at) == '1' && character(slash) == '/') {
+    if (const auto match = match_unit(text_, slash)) {
+      const std::string unit = text_.substr(slash, match->length);
+      const std::string under = unit.substr(1);
+      fail(at, fmt::format("a unit does not begin with a number; write \"{} {}\"{}", digits, unit,
+                           is_unit(under) ? fmt::format(" or \"{} {}^-1\"", digits, under) : ""));
+    }
+  }
+  fail(at, "two numbers stand side by side; expected a sign such as + or * between them");
 }
 
 // "3 dx^2" could be read in two ways.
@@ -119,10 +153,25 @@ void FormulaText::scan_name() {
   position_ += name.size();
   if (const auto length = length_name(name)) return add({*length, dimension::length});
   const bool called = character(after_spaces(position_)) == '(';
-  const bool known =
-      called ? contains(function_names(), name) : name == "pi" || contains(symbols_.variables, name);
+  const bool known = called ? contains(function_names(), name) || call_table(name)
+                            : name == "pi" || contains(symbols_.variables, name);
   if (!known) fail_unknown(name, start);
+  if (called) position_ = after_spaces(position_);  // muParser allows no blank before the bracket
   pieces_.push_back({std::string(name), {}});
+}
+
+bool FormulaText::call_table(std::string_view name) {
+  const auto found = std::find_if(symbols_.tables.begin(), symbols_.tables.end(),
+                                  [&](const auto& table) { return table->name() == name; });
+  if (found == symbols_.tables.end()) return false;
+  if (std::find(tables_.begin(), tables_.end(), *found) == tables_.end()) tables_.push_back(*found);
+  return true;
+}
+
+std::vector<std::string> FormulaText::table_names() const {
+  std::vector<std::string> names;
+  for (const auto& table : symbols_.tables) names.push_back(table->name());
+  return names;
 }
 
 // Everything else goes to muParser as it is, except an assignment: it would change a variable.
@@ -138,6 +187,14 @@ void FormulaText::scan_sign() {
   if (rest[0] == '"') fail(position_, "a formula cannot hold a string");
   pieces_.push_back({std::string(1, rest[0]), {}});
   ++position_;
+}
+
+std::string meaning_in_formulas(const std::string& name) {
+  if (name == "x" || name == "y" || name == "z" || name == "t" || name == "stretch") return "a variable";
+  if (name == "dx" || name == "horizon") return "a length";
+  if (name == "pi") return "a number";
+  if (contains(function_names(), name)) return "a function";
+  return is_unit(name) ? "a unit" : "";
 }
 
 std::optional<double> FormulaText::length_name(std::string_view name) const {
@@ -160,11 +217,17 @@ void FormulaText::fail_unknown(std::string_view name, std::size_t at) const {
         symbols_.variables.empty() ? "expected a constant" : "known are " + listed(symbols_.variables);
     fail(at, fmt::format("\"{}\" is not known here; {}", name, known));
   }
+  const std::vector<std::string> tables = table_names();
+  if (contains(tables, name))
+    fail(at, fmt::format("\"{0}\" is a table; write its argument in brackets, as in \"{0}({1})\"", name,
+                         symbols_.variables.empty() ? "2" : symbols_.variables.back()));
   std::vector<std::string> known = symbols_.variables;
   known.emplace_back("pi");
   if (symbols_.dx) known.emplace_back("dx");
   if (symbols_.horizon) known.emplace_back("horizon");
+  for (const std::string& table : tables) known.push_back(table + "(...)");
   const std::string shown = listed(known);
+  known.insert(known.end(), tables.begin(), tables.end());
   known.insert(known.end(), function_names().begin(), function_names().end());
   known.insert(known.end(), unit_names().begin(), unit_names().end());
   fail(at,

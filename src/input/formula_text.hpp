@@ -28,6 +28,12 @@ class FormulaText {
   /// The formula in muParser's language, in base units of the given sizes.
   [[nodiscard]] std::string si(const UnitScale& scale = {}) const;
 
+  /// The tables that it calls, as `si` of the same scale needs them; or their stand-ins.
+  [[nodiscard]] std::vector<TableCall> tables(const UnitScale& scale, bool stand_in) const;
+  [[nodiscard]] bool calls_tables() const { return !tables_.empty(); }
+  /// For messages: "; the table pull takes a time and gives a length", for each that it calls.
+  [[nodiscard]] std::string what_tables_take() const;
+
   [[nodiscard]] const std::string& written() const { return text_; }
 
  private:
@@ -41,9 +47,12 @@ class FormulaText {
   void scan_name();
   void scan_sign();
   void add(const Quantity& quantity) { pieces_.push_back({"", quantity}); }
+  bool call_table(std::string_view name);
+  [[nodiscard]] std::vector<std::string> table_names() const;
   [[nodiscard]] std::optional<double> length_name(std::string_view name) const;
   [[nodiscard]] std::size_t after_spaces(std::size_t i) const;
   [[nodiscard]] char character(std::size_t i) const { return i < text_.size() ? text_[i] : '\0'; }
+  void check_one_number(const std::string& digits, std::size_t at) const;
   void check_not_a_power(std::string_view name);
   void check_product(double number, std::size_t at);
   [[noreturn]] void fail_unknown(std::string_view name, std::size_t at) const;
@@ -56,6 +65,7 @@ class FormulaText {
   const Origin& origin_;
   std::size_t position_ = 0;
   std::vector<Piece> pieces_;
+  std::vector<std::shared_ptr<const TableFunction>> tables_;  // that it calls, each once
 };
 
 }  // namespace riven

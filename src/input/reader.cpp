@@ -154,7 +154,8 @@ void Reader::check_groups(const toml::table& table, const Format& format, const 
 
 Symbols Reader::symbols(std::vector<std::string> variables) const {
   const GeometryInput& g = case_.geometry;
-  Symbols known{{}, {}, std::move(variables)};
+  Symbols known{{}, {}, std::move(variables), {}};
+  for (const TableInput& table : case_.tables) known.tables.push_back(table.function);
   if (g.lattice.spacing > 0) known.dx = g.lattice.spacing;
   if (g.horizon > 0) known.horizon = g.horizon;
   return known;

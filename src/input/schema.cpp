@@ -1,5 +1,6 @@
 #include "input/schema.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "input/format.hpp"
@@ -79,8 +80,19 @@ bool is_local(const When& when) {
   return when.key.find('.') == std::string::npos;
 }
 
-Json condition(const When& when) {
-  return {{"properties", {{when.key, {{"enum", when.among}}}}}, {"required", Json::array({when.key})}};
+/// A key that is not given has its default, so that the rule may hold without it.
+bool holds_by_default(const When& when, const Format& format) {
+  const auto key =
+      std::find_if(format.keys.begin(), format.keys.end(), [&](const Key& k) { return k.name == when.key; });
+  return key != format.keys.end() && key->fallback &&
+         std::any_of(when.among.begin(), when.among.end(),
+                     [&](const std::string& value) { return *key->fallback == '"' + value + '"'; });
+}
+
+Json condition(const When& when, const Format& format) {
+  Json rule{{"properties", {{when.key, {{"enum", when.among}}}}}};
+  if (!holds_by_default(when, format)) rule["required"] = Json::array({when.key});
+  return rule;
 }
 
 Json group_schema(const Group& group) {
@@ -93,18 +105,18 @@ Json group_schema(const Group& group) {
 void add_rules(const Format& format, Json& rules) {
   for (const Key& key : format.keys) {
     if (key.only && is_local(*key.only)) {
-      Json rule{{"if", condition(*key.only)}};
+      Json rule{{"if", condition(*key.only, format)}};
       if (key.is_required) rule["then"] = {{"required", Json::array({key.name})}};
       rule["else"] = {{"properties", {{key.name, false}}}};
       rules.push_back(rule);
     }
     if (key.required_when && is_local(*key.required_when))
       rules.push_back(
-          {{"if", condition(*key.required_when)}, {"then", {{"required", Json::array({key.name})}}}});
+          {{"if", condition(*key.required_when, format)}, {"then", {{"required", Json::array({key.name})}}}});
   }
   for (const Group& group : format.groups) {
     if (group.only)
-      rules.push_back({{"if", condition(*group.only)}, {"then", group_schema(group)}});
+      rules.push_back({{"if", condition(*group.only, format)}, {"then", group_schema(group)}});
     else
       rules.push_back(group_schema(group));
   }

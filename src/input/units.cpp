@@ -146,7 +146,7 @@ constexpr std::array named_dimensions = std::to_array<NamedDimension>({
     {dimension::pressure, "a pressure", "Pa", "MPa"},
     {{.kilogram = 1}, "a mass", "kg", "kg"},
     {{.kelvin = 1}, "a temperature", "K", "K"},
-    {{.second = -1}, "a rate", "1/s", "1/s"},
+    {{.second = -1}, "a rate", "1/s", "/s"},
     {{.metre = 1, .second = -1}, "a velocity", "m/s", "m/s"},
     {{.metre = 1, .second = -2, .kilogram = 1}, "a force", "N", "N"},
     {{.metre = 2, .second = -2, .kilogram = 1}, "an energy", "J", "J"},
@@ -237,7 +237,9 @@ std::string named(const Dimension& dimension) {
 
 std::string usual_unit(const Dimension& dimension) {
   const NamedDimension* found = find_named(dimension);
-  return found != nullptr ? std::string(found->usual) : si_unit(dimension);
+  if (found != nullptr) return std::string(found->usual);
+  const std::string unit = si_unit(dimension);
+  return unit.starts_with("1/") ? unit.substr(1) : unit;  // "2 /s^2", not "2 1/s^2"
 }
 
 }  // namespace riven

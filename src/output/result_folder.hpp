@@ -31,6 +31,8 @@ class ResultFolder {
 
   /// Where the folder is now: hidden before `publish`, `path` after it.
   [[nodiscard]] const std::filesystem::path& path() const { return current_; }
+  /// Where it is to be, or is; of a new one absolute and without links.
+  [[nodiscard]] const std::filesystem::path& target() const { return target_; }
   [[nodiscard]] std::filesystem::path case_file() const { return current_ / "case.toml"; }
   [[nodiscard]] std::filesystem::path resolved() const { return current_ / "resolved.toml"; }
   [[nodiscard]] std::filesystem::path log() const { return current_ / "riven.log"; }

@@ -122,6 +122,49 @@ void check_fields(const Simulation& simulation) {
                                    simulation.input.model.kind, field, listed(names)));
 }
 
+/// Stretches or times at which the solver may ask for the loads, close enough for what tables may have.
+std::vector<double> marched(const Simulation& simulation) {
+  const SolverInput& solver = simulation.input.solver;
+  std::vector<double> values;
+  const auto add = [&values](double from, double to, int parts) {
+    for (int n = 1; n <= parts; ++n) values.push_back(n == parts ? to : from + (to - from) * n / parts);
+  };
+  if (simulation.parameter == Parameter::time) {
+    // As many as a fraction of a second has time for.
+    const auto terms =
+        static_cast<int>(std::min<std::size_t>(simulation.constraints->offsets().size(), 20000));
+    values.push_back(0);
+    add(0, solver.until, std::clamp(2000000 / (terms + 1), 100, 10000));
+    return values;
+  }
+  constexpr int kHalves = 8;  // of increments, which the solver cuts
+  values.push_back(1);
+  for (const double stretch : solver.stretch) {
+    const double before = values.back();
+    add(before, stretch,
+        kHalves * static_cast<int>(std::ceil(std::abs(stretch - before) / solver.increment - 1e-9)));
+  }
+  return values;
+}
+
+/// A table that ends before the run does must be told before it. Evaluating a load there says what is wrong.
+void check_tables(const Simulation& simulation) {
+  const auto calls_tables = [](const LoadInput& load) {
+    return std::any_of(load.displacement.begin(), load.displacement.end(),
+                       [](const ComponentInput& c) { return c.value && c.value->calls_tables(); });
+  };
+  const auto& loads = simulation.input.loads;
+  const auto first = std::find_if(loads.begin(), loads.end(), calls_tables);
+  if (first == loads.end()) return;
+  for (const double value : marched(simulation)) {
+    simulation.constraints->set_parameter(value);
+    const auto offsets = simulation.constraints->offsets();
+    if (!std::all_of(offsets.begin(), offsets.end(), [](double u) { return std::isfinite(u); }))
+      throw InputError(first->at, fmt::format("load: the displacement is no finite number at {} {:g}",
+                                              name(simulation.parameter), value));
+  }
+}
+
 /// Whether the loads displace the body before they have begun.
 bool jumps_at_start(const Simulation& simulation) {
   std::vector<double> u(simulation.model->dofs(), 0.0);
@@ -174,6 +217,7 @@ std::size_t drop_unreached_expectations(Case& input) {
 }
 
 void check_before_run(const Simulation& simulation, const Probes& probes) {
+  check_tables(simulation);  // before the loads are asked for a state
   check_step(simulation);
   check_fields(simulation);
   const Case& input = simulation.input;

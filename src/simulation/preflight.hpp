@@ -17,8 +17,9 @@ bool reaches(const Case& input, double state);
 /// Takes out the expectations at states that a run with overrides no longer reaches. Returns how many.
 std::size_t drop_unreached_expectations(Case& input);
 
-/// Throws InputError for what would end a run late that can be told before it: a time step above the stable
-/// one, an expectation of a metric, unit, state or file that the run does not have.
+/// Throws InputError for what would end a run late that can be told before it: a load whose table ends
+/// before the run does, a time step above the stable one, an expectation of a metric, unit, state or file
+/// that the run does not have.
 void check_before_run(const Simulation& simulation, const Probes& probes);
 
 /// What is allowed but rarely meant, for the user to read.

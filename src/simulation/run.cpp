@@ -75,12 +75,26 @@ RunStatus march_on(const Simulation& simulation, Recorder& recorder, Progress& s
   return RunStatus::failed;
 }
 
-/// Where the resolved case stands, paths relative to the original one lead nowhere.
-Case with_absolute_paths(Case input) {
-  const auto folder = std::filesystem::absolute(input.file).parent_path();
+/// The result keeps the tables that it came from: it runs again wherever it is moved, whatever becomes of the
+/// files.
+void keep_tables(Case& input, const std::filesystem::path& folder) {
+  if (!input.tables.empty()) std::filesystem::create_directories(folder / "tables");
+  for (TableInput& table : input.tables) {
+    const std::string copy = fmt::format("tables/{}.csv", table.name);
+    std::filesystem::copy_file(table.function->file(), folder / copy);
+    table.file = copy;
+  }
+}
+
+/// Where the resolved case stands, paths relative to the original one lead nowhere. Relative to the result
+/// they survive a move of the folder that holds both.
+Case with_paths_from(const std::filesystem::path& result, Case input) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::absolute(input.file).parent_path();
   const auto fix = [&](std::vector<ExpectInput>& expects) {
     for (ExpectInput& expect : expects)
-      if (!expect.file.empty()) expect.file = (folder / expect.file).lexically_normal().string();
+      if (!expect.file.empty())
+        expect.file = fs::weakly_canonical(folder / expect.file).lexically_relative(result).string();
   };
   fix(input.expects);
   if (input.short_run) fix(input.short_run->expect);
@@ -108,7 +122,9 @@ Summary run_case(const Case& input, const RunOptions& options) {
   const Probes probes(simulation);
   check_before_run(simulation, probes);
   ResultFolder folder = ResultFolder::create(options.folder, options.force);
-  folder.publish(contents(input.file), resolved_case(with_absolute_paths(input)));
+  Case resolved = with_paths_from(folder.target(), input);
+  keep_tables(resolved, folder.path());
+  folder.publish(contents(input.file), resolved_case(resolved));
 
   Progress screen;
   Log log(std::cerr, [&] { screen.clear(); });

@@ -41,7 +41,8 @@ struct StateDeviation {
 
 struct FieldDeviation {
   std::vector<StateDeviation> states;
-  std::vector<double> missing;  // reference states that the result lacks
+  std::vector<double> missing;     // reference states that the result lacks
+  std::vector<double> uncompared;  // states of the result that the reference lacks
 };
 
 /// Compares one state with reference points, at their positions (Interpolation says how).
@@ -78,7 +79,7 @@ std::string table(const FieldDeviation& deviation);
 std::string table(const HistoryDeviation& deviation);
 
 /// {"states": [{"value", "relative_l2", "maximum", "maximum_at", "used", "excluded", "outside"}], "missing":
-/// [...]}; what is not finite is null.
+/// [...], "uncompared": [...]}; what is not finite is null.
 nlohmann::ordered_json to_json(const FieldDeviation& deviation);
 /// {"relative_l2", "maximum", "maximum_at", "used", "outside"}.
 nlohmann::ordered_json to_json(const HistoryDeviation& deviation);

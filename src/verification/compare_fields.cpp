@@ -46,13 +46,29 @@ ResultState read_state(const CollectionEntry& entry) {
   return state;
 }
 
+bool agree(double a, double b) {
+  return std::abs(a - b) <= 1e-6 * std::max(std::abs(a), std::abs(b));
+}
+
 const CollectionEntry* find_state(const std::vector<CollectionEntry>& entries, std::optional<double> value) {
   if (!value) return &entries.back();
-  const auto matches = [&](const CollectionEntry& entry) {
-    return std::abs(entry.value - *value) <= 1e-6 * std::max(std::abs(entry.value), std::abs(*value));
-  };
-  const auto found = std::find_if(entries.begin(), entries.end(), matches);
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [&](const CollectionEntry& entry) { return agree(entry.value, *value); });
   return found == entries.end() ? nullptr : &*found;
+}
+
+// A reference without states is compared with the last one, and says nothing of others.
+std::vector<double> uncompared(const std::vector<CollectionEntry>& entries,
+                               const ReferencePoints& reference) {
+  const auto in_reference = [&](const CollectionEntry& entry) {
+    return std::any_of(reference.states.begin(), reference.states.end(), [&](const ReferenceState& state) {
+      return !state.value || agree(entry.value, *state.value);
+    });
+  };
+  std::vector<double> values;
+  for (const CollectionEntry& entry : entries)
+    if (!in_reference(entry)) values.push_back(entry.value);
+  return values;
 }
 
 std::string values_text(const std::vector<CollectionEntry>& entries) {
@@ -105,6 +121,7 @@ FieldDeviation compare_fields(const std::filesystem::path& folder, const Referen
   const auto entries = read_collection(folder / "fields.pvd");
   if (entries.empty()) throw InputError(Location{(folder / "fields.pvd").string(), 0, 0}, "has no states");
   FieldDeviation result;
+  result.uncompared = uncompared(entries, reference);
   for (const ReferenceState& state : reference.states) {
     const CollectionEntry* entry = find_state(entries, state.value);
     if (!entry) {

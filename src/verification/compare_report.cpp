@@ -30,6 +30,12 @@ std::string table(const FieldDeviation& deviation) {
   }
   for (const double value : deviation.missing)
     text += fmt::format("{:>12.6g}  the result lacks this state\n", value);
+  if (!deviation.uncompared.empty()) {
+    text += "not compared, for the reference lacks them: ";
+    for (const double value : deviation.uncompared)
+      text += fmt::format("{}{:.6g}", text.ends_with(": ") ? "" : ", ", value);
+    text += '\n';
+  }
   return text;
 }
 
@@ -40,7 +46,8 @@ std::string table(const HistoryDeviation& deviation) {
 }
 
 Json to_json(const FieldDeviation& deviation) {
-  Json object = {{"states", Json::array()}, {"missing", deviation.missing}};
+  Json object = {
+      {"states", Json::array()}, {"missing", deviation.missing}, {"uncompared", deviation.uncompared}};
   for (const StateDeviation& state : deviation.states) {
     object["states"].push_back({{"value", state.value},
                                 {"relative_l2", number(state.relative_l2)},

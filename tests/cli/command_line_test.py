@@ -9,7 +9,7 @@ import unittest
 from program import HOLE, MOVING, PLAIN, PROGRAM, ROOT, ProgramTest, replaced
 
 CASES = sorted((ROOT / "cases").rglob("*.toml"))
-COMMANDS = ["run", "check", "cases", "verify", "compare", "schema", "version", "help"]
+COMMANDS = ["new", "run", "check", "cases", "verify", "compare", "schema", "version", "help"]
 
 
 def mistakes(schema, value, path=""):
@@ -71,7 +71,7 @@ class Schema(ProgramTest):
     def test_shipped_cases_fit_it(self):
         schema = json.loads(self.command("schema").stdout)
         self.assertGreaterEqual(len(CASES), 4)
-        for path in CASES:
+        for path in CASES + sorted((ROOT / "src/app/starters").glob("*.toml")):
             self.assertEqual(mistakes(schema, tomllib.loads(path.read_text(encoding="utf-8"))), [], path)
         for text in (PLAIN, HOLE, MOVING):
             self.assertEqual(mistakes(schema, tomllib.loads(text)), [])
@@ -166,8 +166,8 @@ class Words(ProgramTest):
 
     def test_words_that_are_none(self):
         for words, message in {
-                ("rnu",): 'rnu: unknown command; expected one of run, check, cases, verify, compare, schema, version, help; did '
-                          'you mean "run"?',
+                ("rnu",): 'rnu: unknown command; expected one of new, run, check, cases, verify, compare, schema, version, help; '
+                          'did you mean "run"?',
                 ("sheet.toml",): 'did you mean "riven run sheet.toml"?',
                 ("help", "rnu"): 'did you mean "run"?',
                 ("run",): 'case is required; "riven run --help" shows what is expected',

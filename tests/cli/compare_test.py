@@ -21,6 +21,7 @@ class Compare(ProgramTest):
         found = json.loads(self.command(*words).stdout)
         self.assertEqual([state["value"] for state in found["states"]], [1.5, 2])
         self.assertEqual(found["missing"], [2.5, 3])
+        self.assertEqual(found["uncompared"], [])
         worst = max(state["relative_l2"] for state in found["states"])
         self.assertGreater(worst, 1e-5)
         self.assertLess(worst, 0.03)
@@ -38,6 +39,7 @@ class Compare(ProgramTest):
         self.write("points.csv", "stretch,X_m,Y_m,ux_m,uy_m\n1.4,0.05,0.02,0.02,0.008\n1.4,-0.03,0,-0.012,0\n")
         table = self.command("compare", "sheet", "points.csv", "--tolerance", "1e-9").stdout
         self.assertEqual(table.splitlines()[1].split()[0], "1.4")
+        self.assertEqual(table.splitlines()[2:], ["not compared, for the reference lacks them: 1.2"])
         self.write("points.csv", "stretch,X_m,Y_m,ux_m,uy_m\n1.4,0.05,0,0.021,0\n")
         state, = json.loads(self.command("compare", "sheet", "points.csv", "--json", "--tolerance", "4 %",
                                          expect=1).stdout)["states"]

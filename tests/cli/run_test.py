@@ -93,6 +93,24 @@ class Results(ProgramTest):
                                  (self.top / f"{name}-2" / file).read_bytes(), file)
             self.assertEqual(*((self.top / f"{name}-{n}/resolved.toml").read_text() for n in (1, 2)))
 
+    def test_the_resolved_case_names_its_references_from_where_it_lies(self):
+        self.write("work/reference/points.csv", "X_m,Y_m,ux_m,uy_m\n0.05,0.05,0.02,0.02\n")
+        expect = '[[expect]]\nfield = "displacement"\nfile = "../reference/points.csv"\nkind = "published"\n'
+        self.write("work/cases/sheet.toml", f'{PLAIN}\n{expect}\n[short]\nset = ["solver.stretch=[1.2]"]\n\n'
+                   + expect.replace("[[expect]]", "[[short.expect]]"))
+        self.command("run", "../cases/sheet.toml", "-o", "../new/results/sheet", cwd=self.write("work/here/x", "").parent)
+        text = (self.top / "work/new/results/sheet/resolved.toml").read_text()
+        self.assertEqual(text.count('file = "../../../reference/points.csv"'), 2)
+        (self.top / "work").rename(self.top / "moved")
+        resolved = "moved/new/results/sheet/resolved.toml"
+        self.command("check", resolved)
+        self.assertIn("displacement field", self.command("verify", resolved).stdout)
+        # Through a link the path must lead to the same file.
+        (self.top / "link").symlink_to(self.top / "moved/new/results")
+        self.command("check", "link/sheet/resolved.toml")
+        self.command("run", resolved, "-o", "link/again")
+        self.command("check", "moved/new/results/again/resolved.toml")
+
     def test_the_number_of_threads_changes_no_bit(self):
         case = self.write("hole.toml", HOLE)
         moving = self.write("moving.toml", MOVING)

@@ -25,6 +25,11 @@ SET = """
 where = "{where}"
 """
 
+TABLE = replaced(replaced(MOVING, "[geometry]", '[table.pull]\nfile = "pull.csv"\n\n[geometry]'),
+                 '"1e4 /s^2 * x * t*t"', '"pull(t) * x / 0.1 m"')
+STATIC_TABLE = replaced(replaced(PLAIN, "[geometry]", '[table.pull]\nfile = "steps.csv"\n\n[geometry]'),
+                        '"(stretch - 1)*x"', '"pull(stretch) * x"')
+
 # case, what is replaced, by what, the key's line as a fragment (the message must name its line), part of the message
 MISTAKES = [
     ("titel", PLAIN, "title =", "titel =", "titel =", 'did you mean "title"?'),
@@ -37,6 +42,8 @@ MISTAKES = [
     ("no unit", PLAIN, 'thickness = "10 mm"', "thickness = 10", "box =", 'write "10 mm"'),
     ("another dimension", PLAIN, '"6 MPa"', '"6 mm"', "youngs_modulus", "expected a pressure"),
     ("unknown unit", PLAIN, '"6 MPa"', '"6 Mpa"', "youngs_modulus", 'unknown unit "Mpa"'),
+    ("a unit that begins with 1", MOVING, "1e4 /s^2", "1e4 1/s^2", "displacement", 'write "1e4 /s^2"'),
+    ("two numbers", MOVING, "1e4 /s^2", "1e4 2 /s^2", "displacement", "two numbers stand side by side"),
     ("negative", PLAIN, '"6 MPa"', '"-6 MPa"', "youngs_modulus", "above 0"),
     ("no number", PLAIN, '"6 MPa"', "nan", "youngs_modulus", "finite"),
     ("unknown law", PLAIN, '"neo-hookean"', '"neohookean"', "law =", 'did you mean "neo-hookean"?'),
@@ -83,6 +90,42 @@ MISTAKES = [
      "displacement is not written"),
     ("state between", PLAIN + FIELD, "points.csv", "between.csv", "[[expect]]", "no output state at 1.3"),
     ("states beyond", PLAIN + FIELD, "points.csv", "beyond.csv", "[[expect]]", "none of the run's output states"),
+    ("no such table file", TABLE, "pull.csv", "pul.csv", 'file = "pul.csv"', "pul.csv: there is no such file"),
+    ("a folder as a table", TABLE, "pull.csv", ".", 'file = "."', "there is no such file"),
+    ("no file", TABLE, 'file = "pull.csv"', "", "[table.pull]", "table.pull.file: missing; expected a string"),
+    ("unknown key of a table", TABLE, 'file = "pull.csv"', 'file = "pull.csv"\nvalues = "u"', "values", 'did you mean "value"?'),
+    ("no such column", TABLE, 'file = "pull.csv"', 'file = "pull.csv"\nargument = "tim"', 'file = "pull.csv"',
+     'pull.csv:1: expected a column "tim"; there are: time [ms], displacement [mm]; did you mean "time"?'),
+    ("one column twice", TABLE, 'file = "pull.csv"', 'file = "pull.csv"\nargument = "displacement"', 'file = "pull.csv"',
+     "is both argument and value"),
+    ("no number in a table", TABLE, "pull.csv", "letters.csv", 'file = "letters.csv"',
+     'letters.csv:3: column "u [mm]": expected a number, found "one"'),
+    ("a number with a unit", TABLE, "pull.csv", "united.csv", 'file = "united.csv"',
+     'united.csv:2: column "u [mm]": expected a number, found "0 mm"'),
+    ("no number's number", TABLE, "pull.csv", "nan.csv", 'file = "nan.csv"', "nan.csv:3: column \"u [mm]\": found nan"),
+    ("one row", TABLE, "pull.csv", "short.csv", 'file = "short.csv"', "short.csv:1: found one row"),
+    ("a row too long", TABLE, "pull.csv", "ragged.csv", 'file = "ragged.csv"', "ragged.csv:3: expected 2 cells"),
+    ("to and fro", TABLE, "pull.csv", "fro.csv", 'file = "fro.csv"', "fro.csv:4: column \"t [ms]\": 1 comes after 2"),
+    ("unknown unit of a column", TABLE, "pull.csv", "unit.csv", 'file = "unit.csv"', 'unknown unit "sec"'),
+    ("unknown outside", TABLE, 'file = "pull.csv"', 'file = "pull.csv"\noutside = "holds"', 'outside', 'did you mean "hold"?'),
+    ("a table called x", replaced(TABLE, "pull(t)", "t / 1 s"), "[table.pull]", "[table.x]", "[table.x]", '"x" is a variable'),
+    ("a table called sin", replaced(TABLE, "pull(t)", "t / 1 s"), "[table.pull]", "[table.sin]", "[table.sin]", '"sin" is a function'),
+    ("a table called mm", replaced(TABLE, "pull(t)", "t / 1 s"), "[table.pull]", "[table.mm]", "[table.mm]", '"mm" is a unit'),
+    ("a table called dx", replaced(TABLE, "pull(t)", "t / 1 s"), "[table.pull]", "[table.dx]", "[table.dx]", '"dx" is a length'),
+    ("a hyphen", TABLE, "[table.pull]", "[table.my-pull]", "[table.my-pull]", "which formulas could not call"),
+    ("unknown table", TABLE, "pull(t)", "pul(t)", "displacement", 'did you mean "pull"?'),
+    ("a table without argument", TABLE, "pull(t)", "pull", "displacement", '"pull" is a table'),
+    ("two arguments", TABLE, "pull(t)", "pull(t, x)", "displacement", "Too many parameters"),
+    ("a place for a time", TABLE, "pull(t)", "pull(x)", "displacement", "the table pull takes a time"),
+    ("an area for a length", TABLE, "pull(t) * x / 0.1 m", "pull(t) * 1 m", "displacement", "an area (m^2); expected a length"),
+    ("a table that ends early", TABLE, 'until = "4 ms"', 'until = "4.1 ms"', "displacement", "pull.csv goes from 0 s to 0.004 s"),
+    ("a table that begins late", TABLE, "pull(t)", "pull(t - 1 us)", "displacement", "the table pull has no value at -1e-06 s"),
+    ("a table that ends between", TABLE, "pull(t)", "pull(5 ms * sin(1e3*t))", "displacement", "the table pull has no value at"),
+    ("a stretch beyond a table", STATIC_TABLE, "[1.2, 1.4]", "[1.2, 1.5]", "displacement", "(at x = "),
+    ("no number from a table", TABLE, "pull(t) * x", "1 mm * sqrt(pull(t) / 1 mm - 1) * x", "[[load]]", "is no finite number at time 0"),
+    ("a set beyond a table", TABLE + SET.format(name="far", where="y > pull(x * 1 s/m) + 1 mm"), "1 s/m", "2 s/m", "where",
+     "the table pull has no value"),
+    ("a constant beyond a table", TABLE, 'until = "4 ms"', 'until = "1 s * pull(5 ms) / 1 mm"', "until", "no value at 0.005 s"),
     ("broken reference", PLAIN + FIELD, "points.csv", "broken.csv", "[[expect]]", "broken.csv:2"),
 ]
 
@@ -95,6 +138,12 @@ class WrongInput(ProgramTest):
         self.write("between.csv", header + "1.2,0.01,0,0.002,0\n1.3,0.01,0,0.003,0\n")
         self.write("beyond.csv", header + "3,0.01,0,0.02,0\n")
         self.write("broken.csv", header + "1.4,0.01,zero,0.002,0\n")
+        self.write("pull.csv", "time [ms],displacement [mm]\n0,0\n1,1\n4,2\n")
+        self.write("steps.csv", "stretch,pull\n1,0\n1.4,0.4\n")
+        for name, rows in {"letters": "0,0\n1,one\n", "united": "0,0 mm\n1,1 mm\n", "nan": "0,0\n1,nan\n", "short": "0,0\n",
+                           "ragged": "0,0\n1,1,1\n", "fro": "0,0\n2,1\n1,2\n"}.items():
+            self.write(f"{name}.csv", "t [ms],u [mm]\n" + rows)
+        self.write("unit.csv", "t [sec],u [mm]\n0,0\n1,1\n")
 
     def test_each_mistake_is_named_with_its_place(self):
         for name, text, old, new, marked, message in MISTAKES:
@@ -114,7 +163,8 @@ class WrongInput(ProgramTest):
                 self.assertEqual(self.refused("check", case), said, "check and run must agree")
 
     def test_the_cases_are_right_without_the_mistake(self):
-        for name, text in {"plain": PLAIN + EXPECT, "hole": HOLE + FIELD, "moving": MOVING}.items():
+        for name, text in {"plain": PLAIN + EXPECT, "hole": HOLE + FIELD, "moving": MOVING, "table": TABLE,
+                           "steps": STATIC_TABLE}.items():
             self.command("check", self.write(f"{name}.toml", text))
 
     def test_three_dimensions_have_no_membrane(self):

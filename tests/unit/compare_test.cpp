@@ -358,9 +358,11 @@ TEST(CompareFields, MatchesStatesByValue) {
   EXPECT_EQ(result.states[1].value, 1.5);
   EXPECT_LT(result.states[1].relative_l2, 1e-13);
   EXPECT_EQ(result.missing, (std::vector<double>{1.5 * (1 + 2e-6), 3}));
+  EXPECT_EQ(result.uncompared, std::vector<double>{1});
   const auto last = compare_fields(scratch.path(), reference_with({std::nullopt}), settings());
   EXPECT_EQ(last.states.at(0).value, 2);
   EXPECT_LT(last.states[0].relative_l2, 1e-13);
+  EXPECT_TRUE(last.uncompared.empty());
 }
 
 TEST(CompareFields, PointsWithoutBondsAreNotLive) {
@@ -429,16 +431,18 @@ TEST(CompareHistory, RefusesWhatCannotBeCompared) {
 }
 
 TEST(CompareReport, TableAndJsonHoldTheNumbers) {
-  const FieldDeviation deviation{{{1.5, 0.0123, 4.5e-4, {0.25, -0.125, 0}, 80, 12, 3}}, {2.5}};
+  const FieldDeviation deviation{{{1.5, 0.0123, 4.5e-4, {0.25, -0.125, 0}, 80, 12, 3}}, {2.5}, {1, 1.25}};
   const std::string text = table(deviation);
   for (const char* part :
-       {"1.5 ", "1.230e-02", "4.500e-04", "(0.25, -0.125, 0)", "80", "12", "3\n", "2.5  the result lacks"}) {
+       {"1.5 ", "1.230e-02", "4.500e-04", "(0.25, -0.125, 0)", "80", "12", "3\n", "2.5  the result lacks",
+        "\nnot compared, for the reference lacks them: 1, 1.25\n"}) {
     EXPECT_NE(text.find(part), text.npos) << part;
   }
   const auto json = to_json(deviation);
   EXPECT_EQ(json["states"][0]["relative_l2"], 0.0123);
   EXPECT_EQ(json["states"][0]["excluded"], 12);
   EXPECT_EQ(json["missing"][0], 2.5);
+  EXPECT_EQ(json["uncompared"], (std::vector<double>{1, 1.25}));
   const HistoryDeviation history{0.5, 2, 1.25, 10, 1};
   EXPECT_NE(table(history).find("5.000e-01"), std::string::npos);
   EXPECT_EQ(to_json(history)["maximum_at"], 1.25);

@@ -55,6 +55,7 @@ TEST(Formula, NumbersWithUnitsStandAnywhere) {
   EXPECT_DOUBLE_EQ(value("0.1 m/s * t + 1e-3 /s * t * x", dimension::length), 0.025 + 0.25e-3 * 0.1);
   EXPECT_DOUBLE_EQ(value("1 MPa * sign(y)", dimension::pressure), -1e6);
   EXPECT_DOUBLE_EQ(value("50 %", dimension::none), 0.5);
+  EXPECT_DOUBLE_EQ(value("abs (y)", dimension::length), 0.2);
   EXPECT_DOUBLE_EQ(value("0", dimension::pressure), 0);
   EXPECT_DOUBLE_EQ(value("t < 1 ms ? 0 : 2 MPa", dimension::pressure), 2e6);
 }
@@ -99,6 +100,23 @@ TEST(Formula, ErrorsPointIntoTheText) {
   EXPECT_NE(error("2 mmm", dimension::length).find("unknown unit \"mmm\""), std::string::npos);
   EXPECT_NE(error("2 mmm", dimension::length).find("did you mean \"mm\"?"), std::string::npos);
   EXPECT_EQ(error("x = 3 mm", dimension::length).substr(0, 15), "case.toml:7:19:");
+  EXPECT_EQ(
+      error("20 1/s", rate),
+      "case.toml:7:20: load.0.displacement: \"20 1/s\": a unit does not begin with a number; write \"20 "
+      "/s\" or \"20 s^-1\"");
+  EXPECT_NE(error("2e3 1/s^2 * x", dimension::length).find("write \"2e3 /s^2\""), std::string::npos);
+  EXPECT_NE(error("2 3", dimension::none).find("two numbers stand side by side"), std::string::npos);
+  EXPECT_NE(error("2 1/min(x, y)", dimension::none).find("two numbers stand side by side"),
+            std::string::npos);
+  EXPECT_NE(error("2 1/s^0.5", rate).find("must be a whole number"), std::string::npos);
+  EXPECT_EQ(error("20 s^-1", rate), "accepted");
+  EXPECT_NE(error("20", rate).find("write \"20 /s\" (a rate)"), std::string::npos) << error("20", rate);
+}
+
+TEST(Formula, UnitsThatMessagesProposeAreAccepted) {
+  for (const Dimension& d : {rate, Dimension{.second = -2}, Dimension{.metre = -3}, Dimension{.kelvin = -1},
+                             Dimension{.metre = 1, .second = -3, .kilogram = 2}, dimension::density})
+    EXPECT_EQ(error("10 " + usual_unit(d), d), "accepted") << usual_unit(d);
 }
 
 TEST(Formula, WhatIsNoFormulaIsRefused) {
