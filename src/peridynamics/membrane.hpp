@@ -121,6 +121,7 @@ class Membrane final : public Model {
   void scatter_listed(std::span<const double> u, std::span<double> force) const;
   [[nodiscard]] std::optional<Breakdown> first_collapsed() const;
   void add_far_bound(const MembraneBond& bond, double row, std::span<double> bound) const;
+  [[nodiscard]] const ListedFamily* gradient_family(std::size_t point) const;
   [[nodiscard]] std::array<double, 3> family_curvature(std::size_t point) const;
 
   LatticeBody body_;
