@@ -20,6 +20,7 @@ import tomllib
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CASES = ROOT / "cases" / "neo-hookean-membrane"
 EXCLUDED = "15 mm"
+METRICS = ["force_x", "force_y", "lateral_stretch"]
 GRIDS, GRIDS_OF_SLOTS = [50, 100, 150, 200], [50, 100, 150, 200, 400]
 ROUNDING = 1e-7  # relative; a deviation below it is none
 NOISE = 3e-5  # of the order of the solver's tolerance: a deviation below it says nothing about the grid
@@ -73,8 +74,9 @@ def references(case):
 
 
 def values(result, metric):
-    """{stretch: value} of a metric."""
-    return {state["stretch"]: state["metrics"][metric]["value"] for state in result["summary"]["states"]}
+    """{stretch: value} of a metric; nothing where the case does not have it."""
+    states = result["summary"]["states"]
+    return {state["stretch"]: state["metrics"][metric]["value"] for state in states if metric in state["metrics"]}
 
 
 def field_deviations(result, field, options):
@@ -130,75 +132,80 @@ def print_table(head, rows):
 def effort(result):
     text = str(result["summary"]["timing"]["iterations"])
     if result["halved"]:
-        text += f", {result['halved']} steps halved"
+        text += f", {result['halved']} halved"
     if result["summary"]["status"] != "finished":
         text += f", {result['summary']['status']}"
     return text
 
 
-def deviation_table(points, results, metrics, field, options):
-    """A grid per row: deviations (%) at all stretches; then the order of each column."""
+def deviation_rows(name, grids, results, metrics, field, options):
+    """A row per grid: deviations (%) of all metrics and the field at all stretches; then a row of orders."""
     columns = {}
-    for metric, expected in metrics.items():
-        ours = [values(result, metric) for result in results]
+    for metric in METRICS:
+        expected, ours = metrics.get(metric, {}), [values(result, metric) for result in results]
         columns[metric] = [{at: v[at] / value - 1 for at, value in expected.items() if at in v} for v in ours]
-    if field:
-        columns["field"] = [field_deviations(result, field, options) for result in results]
+    columns["field"] = [field_deviations(result, field, options) for result in results]
+    orders = [order(grids, column) if column[0] else "" for column in columns.values()]
+    if all(text in ("exact", "") for text in orders):
+        return [[name, "all", *orders, ", ".join(sorted({effort(result) for result in results}))]]
     rows = []
     for n, result in enumerate(results):
-        cells = [percents(column[n], name != "field") for name, column in columns.items()]
-        rows.append([str(points[n]), *cells, effort(result)])
-    orders = [order(points, column) for column in columns.values()]
-    rows.append(["order", *orders, ""])
-    print_table(["points", *(f"{name} (%)" for name in columns), "force evaluations"], rows)
+        cells = [percents(column[n], metric != "field") if column[n] else "" for metric, column in columns.items()]
+        rows.append([name if n == 0 else "", str(grids[n]), *cells, effort(result)])
+    return [*rows, ["", "order", *orders, ""]]
 
 
-def series_table(points, results, metrics, slot):
-    """A grid per row: forces (kN) at all stretches; then their limits."""
-    rows = [[str(n)] + [" / ".join(f"{v / 1e3:.2f}" for v in values(r, m).values()) for m in metrics] + [effort(r)]
-            for n, r in zip(points, results)]
-    cells = []
-    for metric in metrics:
-        series = [list(values(result, metric).values()) for result in results]
-        found = [limits(points, forces, slot) for forces in zip(*series)]
-        cells.append(" / ".join(" to ".join(f"{f / 1e3:.2f}" for f in sorted(limit)) for limit in found) if all(found) else "-")
-    rows.append(["limit", *cells, ""])
-    print_table(["points", *(f"{name} (kN)" for name in metrics), "force evaluations"], rows)
+def series_rows(name, grids, results, forces, slot):
+    """A row per grid: forces (kN) at all stretches; then a row of their limits."""
+    rows, found = [], []
+    for n, result in enumerate(results):
+        cells = [" / ".join(f"{v / 1e3:.2f}" for v in values(result, f).values()) if f in forces else "" for f in METRICS[:2]]
+        rows.append([name if n == 0 else "", str(grids[n]), *cells, effort(result)])
+    for force in METRICS[:2]:
+        series = zip(*(values(result, force).values() for result in results)) if force in forces else []
+        limit = [limits(grids, f, slot) for f in series]
+        found.append(" / ".join(" to ".join(f"{x / 1e3:.2f}" for x in sorted(l)) for l in limit) if all(limit) else "")
+    return [*rows, ["", "limit", *found, ""]]
 
 
-def print_limit_check(points, results, metrics, slot):
+def limit_error(grids, results, metrics, slot):
     """How far the limits of the forces are from the references: what such limits are worth."""
-    worst = None
-    for metric, expected in metrics.items():
-        if not metric.startswith("force"):
-            continue
-        for at, value in expected.items():
+    worst = 0.0
+    for metric in METRICS[:2]:
+        for at, value in metrics.get(metric, {}).items():
             forces = [values(result, metric).get(at) for result in results]
-            found = limits(points, forces, slot) if all(forces) else None
-            for limit in found or ():
-                worst = max(worst or 0, abs(limit / value - 1))
-    if worst is not None:
-        print(f"Limits of the forces, found as for cases without reference, deviate by at most {100 * worst:.2f} %.\n")
+            found = limits(grids, forces, slot) if all(forces) else None
+            worst = max([worst, *(abs(limit / value - 1) for limit in found or [])])
+    return worst
 
 
 def main():
     options = arguments()
+    deviations, series, errors = [], [], []
     for name in options.cases:
         case = tomllib.loads((CASES / f"{name}.toml").read_text())
         slot = name.endswith("-crack")
         grids = options.points or (GRIDS_OF_SLOTS if slot else GRIDS)
         results = [run(name, points, options) for points in grids]
         metrics, field = references(case)
-        print(f"#### {name}\n\nStretch {' / '.join(f'{s:g}' for s in case['solver']['stretch'])}.\n")
+        probes = [probe["name"] for probe in case["probe"]]
+        if name.startswith("equibiaxial"):
+            probes.remove("force_y")  # the same as force_x
         if metrics:
-            deviation_table(grids, results, metrics, field, options)
+            deviations += deviation_rows(name, grids, results, metrics, field, options)
             if not name.endswith("-plain"):
-                print_limit_check(grids, results, metrics, slot)
+                errors.append(f"{name} {100 * limit_error(grids, results, metrics, slot):.2f} %")
         else:
-            forces = [p["name"] for p in case["probe"] if p["name"].startswith("force")]
-            if name.startswith("equibiaxial"):
-                forces = forces[:1]  # the other one is the same
-            series_table(grids, results, forces, slot)
+            series += series_rows(name, grids, results, probes, slot)
+    if deviations:
+        print("Deviations (%) from the references, at each stretch:\n")
+        units = [f"{metric} (%)" for metric in [*METRICS, "field"]]
+        print_table(["case", "points", *units, "force evaluations"], deviations)
+    if series:
+        print("Forces (kN) of cases without reference, at each stretch:\n")
+        print_table(["case", "points", *(f"{metric} (kN)" for metric in METRICS[:2]), "force evaluations"], series)
+    if errors:
+        print("Limits found in the same way where there is a reference deviate from it by at most: " + ", ".join(errors))
 
 
 if __name__ == "__main__":
