@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs the cases of neo-hookean-membrane on several grids and prints the tables of docs/verification.md as Markdown.
 
-    docs/convergence.py                  # all cases on 50, 100, 150, 200 points per side, those with a slot on 400 too: an hour on a core
+    docs/convergence.py         # all cases on 50, 100, 150, 200 points per side, those with a slot on 400 too: an hour on a core
     docs/convergence.py --program build/release/riven --threads 1 --keep planar-hole
 
 Deviations are those from the `reference` expectations of the case files; fields are compared on the same reference points on every
