@@ -262,17 +262,23 @@ std::vector<ModelField> Membrane::fields(std::span<const double> u) {
   return {std::move(damage), std::move(energy), std::move(stress), std::move(weight)};
 }
 
+/// The family of a point that goes by its deformation gradient, or null.
+const Membrane::ListedFamily* Membrane::gradient_family(std::size_t point) const {
+  if (listed_index_[point] < 0) return nullptr;
+  const ListedFamily& family = listed_[static_cast<std::size_t>(listed_index_[point])];
+  return family.by_gradient ? &family : nullptr;
+}
+
 /// Bounds of the second derivatives of a point's energy in its family sums, over the volume: by (a, b - 2 a0
 /// a), a0 the present a. In a homogeneous state the second of these does not move, while in a and b alone
 /// large numbers would cancel.
 std::array<double, 3> Membrane::family_curvature(std::size_t point) const {
   const double a = mean_s2_[point], b = mean_s4_[point];
-  if (listed_index_[point] >= 0 && listed_[static_cast<std::size_t>(listed_index_[point])].by_gradient) {
-    // The energy is a function of F; its tangent is bounded through the stretches of the same family.
+  if (gradient_family(point)) {  // the energy is a function of F, and the one sum is F itself
     Eigen::Matrix2d half_f;
     half_f << mean_gradient_[0][point], mean_gradient_[1][point], mean_gradient_[2][point],
         mean_gradient_[3][point];
-    return {material_.plane_stress(2 * half_f).tangent.norm() / a, 0, 0};
+    return {material_.plane_stress(2 * half_f).tangent.norm(), 0, 0};
   }
   const FamilyEnergy e = std::visit([&](const auto& law) { return family_energy(law, a, b); }, material_.law);
   return {std::abs(e.waa + 4 * a * e.wab + 4 * a * a * e.wbb), std::abs(e.wab + 2 * a * e.wbb),
@@ -306,13 +312,17 @@ void Membrane::stiffness_bound(std::span<const double> u, std::span<double> boun
   std::vector<BondBound> family;
   for (const std::size_t i : body().points) {
     const PointForce law = point_force(i);
+    const ListedFamily* by_gradient = gradient_family(i);
     FamilySum first, second;
     family.clear();
     for_each_bond(i, [&](const MembraneBond& bond) {
       const Eigen::Vector2d y = deformed(i, bond, u);
       const double inverse2 = 1 / bond.reference.squaredNorm(), s2 = y.squaredNorm() * inverse2;
       const double block = bond.weight * inverse2 * (std::abs(law.a + law.b * s2) + 2 * std::abs(law.b) * s2);
-      const Eigen::Vector2d ga = 2 * bond.weight * inverse2 * y, gb = 2 * (s2 - mean_s2_[i]) * ga;
+      Eigen::Vector2d ga = 2 * bond.weight * inverse2 * y;
+      const Eigen::Vector2d gb = 2 * (s2 - mean_s2_[i]) * ga;
+      // F moves by an end's displacement times this; long where the bonds lie nearly on one line.
+      if (by_gradient) ga = bond.weight * inverse2 * (by_gradient->inverse_shape * bond.reference);
       first.add(ga);
       second.add(gb);
       family.push_back({bond, block, ga.norm(), gb.norm()});

@@ -186,6 +186,23 @@ TEST_P(Sheet, TellsFoldedAndCollapsedStates) {
   EXPECT_FALSE(membrane.inspect(affine_state(membrane, diagonal(2, 0.5))));
 }
 
+TEST_P(Sheet, NamesThePlaceOfAFold) {
+  // The upper half turned over along a line between two rows: every bond within a half has its length, and
+  // there is nothing wrong with the forces.
+  Membrane membrane = make(sheet(12, 16, 0.1));
+  const Lattice& lattice = membrane.body().on_lattice()->lattice;
+  State2 u(membrane.dofs(), 0.0), force(membrane.dofs());
+  for (const std::size_t i : membrane.body().points)
+    u[lattice.size() + i] = -2 * std::max(0.0, lattice.position(i)[1]);
+  EXPECT_FALSE(membrane.internal_force(u, force));
+  for (const double f : force) EXPECT_TRUE(std::isfinite(f));
+  const auto breakdown = membrane.inspect(u);
+  ASSERT_TRUE(breakdown);
+  EXPECT_NE(breakdown->what.find("folded"), std::string::npos);
+  EXPECT_GT(breakdown->position[1], 0);
+  EXPECT_LT(breakdown->position[1], 3 * 0.1);  // the first points above the line
+}
+
 TEST(Membrane, IsTwoDimensional) {
   LatticeBodyInput block = sheet(6, 6, 0.1);
   block.dimension = 3;

@@ -12,8 +12,11 @@ namespace {
 /// E = x^2 (x - 2)^2 + (x - p)^2 / 2, where the load moves p = u[0] and x = u[1] is free. At rest in the well
 /// at 0; it loses stability where the second derivative vanishes, at x = 1/2 and p = 2, and snaps to the well
 /// at 2.
+/// `inspect` finds fault with x beyond `sound_to`, as it does with folded sheets: there the forces balance
+/// all the same.
 class DoubleWell final : public Model {
  public:
+  explicit DoubleWell(double sound_to = 10) : sound_to_(sound_to) {}
   [[nodiscard]] std::size_t dofs() const override { return 2; }
   std::optional<Breakdown> internal_force(std::span<const double> u, std::span<double> force) override {
     const double x = u[1], pull = u[0] - x;
@@ -32,7 +35,10 @@ class DoubleWell final : public Model {
     bound[1] = 30;  // 12 x^2 - 24 x + 8 + 2 stays below for x in [-0.5, 2.6]
   }
   [[nodiscard]] double spacing() const override { return 1; }
-  [[nodiscard]] std::optional<Breakdown> inspect(std::span<const double>) override { return std::nullopt; }
+  [[nodiscard]] std::optional<Breakdown> inspect(std::span<const double> u) override {
+    if (u[1] <= sound_to_) return std::nullopt;
+    return Breakdown{{0.25, 0.5, 0}, "unsound"};
+  }
   void move(std::span<double>, const std::array<std::array<double, 3>, 3>&, const Point&) const override {}
   [[nodiscard]] std::vector<Point> positions() const override { return {Point{}}; }
   [[nodiscard]] std::vector<Point> displacements(std::span<const double> u) const override {
@@ -42,15 +48,24 @@ class DoubleWell final : public Model {
   [[nodiscard]] std::vector<std::string> describe() const override { return {}; }
   [[nodiscard]] std::size_t points() const override { return 1; }
   [[nodiscard]] std::size_t bonds() const override { return 1; }
+
+ private:
+  double sound_to_;
 };
 
 struct Remarks : Observer {
+  void reached(const State& state, const Constraints&, bool output) override {
+    farthest = std::max(farthest, state.u[1]);
+    outputs += output ? 1 : 0;
+  }
   void remarked(const std::string& remark) override { list.push_back(remark); }
   std::vector<std::string> list;
+  double farthest = 0;
+  int outputs = 0;
 };
 
-State pull_to(double end, Remarks& remarks) {
-  DoubleWell model;
+State pull_to(double end, Remarks& remarks, double sound_to = 10) {
+  DoubleWell model(sound_to);
   Constraints constraints(2, 1);
   constraints.add({.slave = 0, .terms = {{[](const Point&, double p) { return p - 1; }, {}, 0, 1, 0}}});
   return relax(model, constraints, {.targets = {end}, .increment = 0.1, .tolerance = 1e-8}, remarks);
@@ -74,6 +89,21 @@ TEST(Snapping, IsReportedWithTheLostEnergy) {
   // The balance keeps the loss: at the fold E = 9/16 + 9/8, in the other well next to nothing (measured
   // -0.989).
   EXPECT_LT(state.energy.error(), -0.8);
+}
+
+TEST(Snapping, IntoAnUnsoundStateIsNoSuccess) {
+  Remarks remarks;
+  try {
+    pull_to(3.2, remarks, 1);
+    FAIL() << "no failure";
+  } catch (const SolverFailure& failure) {
+    const std::string what = failure.what();
+    EXPECT_NE(what.find("no equilibrium beyond 2.99"), std::string::npos)
+        << what;  // the well ends at p - 1 = 3
+    EXPECT_NE(what.find("unsound at (0.25, 0.5, 0) m"), std::string::npos) << what;
+  }
+  EXPECT_LE(remarks.farthest, 1);  // observers have seen sound states only, and not the one asked for
+  EXPECT_EQ(remarks.outputs, 0);
 }
 
 }  // namespace
