@@ -21,7 +21,9 @@ std::vector<fs::path> shipped_files() {
   if (!fs::is_directory(cases_folder())) return files;
   for (const auto& entry : fs::recursive_directory_iterator(cases_folder()))
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  // By name: "plain" comes before "plain-published", which "plain.toml" does not.
+  std::sort(files.begin(), files.end(),
+            [](fs::path a, fs::path b) { return a.replace_extension() < b.replace_extension(); });
   return files;
 }
 
@@ -65,12 +67,14 @@ fs::path default_output(const fs::path& case_file) {
 
 int cases() {
   std::string topic;
+  std::size_t width = 0;
+  for (const fs::path& file : shipped_files()) width = std::max(width, case_name(file).size());
   for (const fs::path& file : shipped_files()) {
     const std::string name = case_name(file);
     const std::string here = name.substr(0, name.find('/'));
     if (here != topic) fmt::print("{}{}\n", topic.empty() ? "" : "\n", here);
     topic = here;
-    fmt::print("  {:<44} {}\n", name, read_case(file).title);
+    fmt::print("  {:<{}}  {}\n", name, width, read_case(file).title);
   }
   return kDone;
 }

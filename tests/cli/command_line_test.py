@@ -8,7 +8,7 @@ import unittest
 
 from program import HOLE, MOVING, PLAIN, PROGRAM, ROOT, ProgramTest, replaced
 
-CASES = sorted((ROOT / "cases").rglob("*.toml"))
+CASES = sorted((ROOT / "cases").rglob("*.toml"), key=lambda path: path.with_suffix(""))
 COMMANDS = ["new", "run", "check", "cases", "verify", "compare", "schema", "version", "help"]
 
 
