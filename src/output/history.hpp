@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "output/csv.hpp"
+#include "base/csv.hpp"
 #include "output/parameter.hpp"
 
 namespace riven {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "base/csv.hpp"
 #include "base/error.hpp"
-#include "output/csv.hpp"
 #include "output/history.hpp"
 #include "verification/compare.hpp"
 #include "verification/deviation.hpp"

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/csv.hpp"
 #include "base/error.hpp"
-#include "output/csv.hpp"
 #include "verification/state_column.hpp"
 
 namespace riven {

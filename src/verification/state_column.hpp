@@ -6,8 +6,8 @@
 #include <optional>
 #include <string_view>
 
+#include "base/csv.hpp"
 #include "base/error.hpp"
-#include "output/csv.hpp"
 
 namespace riven {
 

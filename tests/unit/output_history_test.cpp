@@ -6,8 +6,8 @@
 #include <random>
 #include <stdexcept>
 
+#include "base/csv.hpp"
 #include "base/error.hpp"
-#include "output/csv.hpp"
 #include "output/history.hpp"
 #include "scratch.hpp"
 

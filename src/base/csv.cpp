@@ -1,4 +1,4 @@
-#include "output/csv.hpp"
+#include "base/csv.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
