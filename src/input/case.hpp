@@ -13,16 +13,12 @@ namespace riven {
 
 /// What the user wrote, parsed and checked, in SI units. `src/input/case_format.cpp` declares the format.
 
-struct LatticeInput {    // [geometry] box = {...} or disc = {...}
+struct GeometryInput {   // [geometry]
   Shape shape;           // the body; a box is centred at the origin unless `from` gives its lower corner
   int dimension = 2;     // number of entries of the box's size; 2 for a disc with a thickness
   double thickness = 1;  // m (2D), or m^2 (1D: key `area`)
   double spacing = 0;    // m
   Location at;
-};
-
-struct GeometryInput {
-  LatticeInput lattice;
   double horizon = 0;  // m
   Location horizon_at;
 };

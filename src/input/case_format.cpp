@@ -63,7 +63,7 @@ void check_new_name(const std::vector<Item>& items, const Item& item, const Chec
 }
 
 void check_shape(const Shape& shape, const Case& c, const Check& check) {
-  if (std::holds_alternative<Ball>(shape) && c.geometry.lattice.dimension != 3)
+  if (std::holds_alternative<Ball>(shape) && c.geometry.dimension != 3)
     check.fail("ball", "belongs to bodies in three dimensions; expected disc or box");
 }
 
@@ -87,8 +87,7 @@ Format describe(CrackInput& crack, const Case& c) {
           .keys = {Key{"from", Place{&crack.segment.a}, "One end."}.required(),
                    Key{"to", Place{&crack.segment.b}, "The other end."}.required()},
           .finish = [&crack, &c](const Check& check) {
-            if (c.geometry.lattice.dimension != 2)
-              check.fail("from", "cracks belong to bodies in two dimensions");
+            if (c.geometry.dimension != 2) check.fail("from", "cracks belong to bodies in two dimensions");
             if (crack.segment.a == crack.segment.b)
               check.fail("to", "is the same place as from; expected a crack with a length");
           }};
@@ -393,8 +392,8 @@ bool always() {
 
 std::vector<std::string> edge_names(const Case& of) {
   std::vector<std::string> names{"left", "right", "bottom", "top", "back", "front"};
-  if (!std::holds_alternative<Box>(of.geometry.lattice.shape)) return {};
-  names.resize(2 * static_cast<std::size_t>(of.geometry.lattice.dimension));
+  if (!std::holds_alternative<Box>(of.geometry.shape)) return {};
+  names.resize(2 * static_cast<std::size_t>(of.geometry.dimension));
   return names;
 }
 

@@ -155,7 +155,7 @@ void Reader::check_groups(const toml::table& table, const Format& format, const 
 Symbols Reader::symbols(std::vector<std::string> variables) const {
   const GeometryInput& g = case_.geometry;
   Symbols known{{}, {}, std::move(variables)};
-  if (g.lattice.spacing > 0) known.dx = g.lattice.spacing;
+  if (g.spacing > 0) known.dx = g.spacing;
   if (g.horizon > 0) known.horizon = g.horizon;
   return known;
 }

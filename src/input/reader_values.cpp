@@ -141,7 +141,7 @@ void Reader::read_value(const kind::AnyUnit& to, const toml::node& node, const O
 }
 
 void Reader::read_value(const kind::Place& to, const toml::node& node, const Origin& origin) {
-  const auto count = static_cast<std::size_t>(case_.geometry.lattice.dimension);
+  const auto count = static_cast<std::size_t>(case_.geometry.dimension);
   const toml::array& list = list_of(node, origin, fmt::format("a list of {} lengths", count));
   if (list.size() != count)
     origin.fail(fmt::format("found {} entries; expected {}, one per direction", list.size(), count));
@@ -174,7 +174,7 @@ ComponentInput Reader::component(const toml::node& node, const Origin& origin) c
 }
 
 void Reader::read_value(const kind::Components& to, const toml::node& node, const Origin& origin) {
-  const auto count = static_cast<std::size_t>(case_.geometry.lattice.dimension);
+  const auto count = static_cast<std::size_t>(case_.geometry.dimension);
   const toml::array& list =
       list_of(node, origin, fmt::format("a list of {} entries, one per direction", count));
   if (list.size() != count)

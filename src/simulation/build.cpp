@@ -57,7 +57,7 @@ std::vector<Point> outline(const Shape& shape) {
 
 /// A defect that the body does not hold is a slip of a sign or a unit.
 void check_places(const Case& in, double touch) {
-  const Shape& body = in.geometry.lattice.shape;
+  const Shape& body = in.geometry.shape;
   for (const HoleInput& hole : in.holes)
     if (!overlap(hole.shape, body, touch))
       throw InputError(hole.at, "hole: lies outside of the body; expected one that cuts it");
@@ -89,7 +89,7 @@ Defects make_defects(const Case& in) {
     placed.push_back({inclusion.shape, inclusion.at});
   }
   for (const CrackInput& crack : in.cracks) defects.cracks.push_back(crack.segment);
-  const double touch = 1e-6 * in.geometry.lattice.spacing;
+  const double touch = 1e-6 * in.geometry.spacing;
   check_places(in, touch);
   for (std::size_t a = 0; a < placed.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)
@@ -111,19 +111,19 @@ Faces loaded_faces(const Case& in) {
 }
 
 Body make_body(const Case& in) {
-  const LatticeInput& lattice = in.geometry.lattice;
+  const GeometryInput& geometry = in.geometry;
   try {
-    return make_lattice_body({.dimension = lattice.dimension,
-                              .shape = lattice.shape,
-                              .thickness = lattice.thickness,
-                              .spacing = lattice.spacing,
-                              .horizon = in.geometry.horizon,
+    return make_lattice_body({.dimension = geometry.dimension,
+                              .shape = geometry.shape,
+                              .thickness = geometry.thickness,
+                              .spacing = geometry.spacing,
+                              .horizon = geometry.horizon,
                               .defects = make_defects(in),
                               .mirrored = loaded_faces(in)});
   } catch (const InputError& error) {
     const std::string what = error.what();
     if (what.starts_with(in.file.string())) throw;
-    throw InputError(lattice.at, "geometry: " + what);
+    throw InputError(geometry.at, "geometry: " + what);
   }
 }
 

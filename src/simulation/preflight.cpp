@@ -210,14 +210,13 @@ double memory_estimate(const GeometryInput& geometry) {
   // Planes of the model, vectors of the solver and what outputs copy, in doubles per lattice point and per
   // direction.
   constexpr double kPlanes = 30, kVectors = 12, kProgram = 30e6;
-  const LatticeInput& lattice = geometry.lattice;
-  const double reach = geometry.horizon / lattice.spacing;
+  const double reach = geometry.horizon / geometry.spacing;
   double points = 1, bonds = 1;
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(lattice.dimension); ++axis) {
-    points *= points_along(lattice.shape, lattice.spacing, axis) + 2 * reach;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(geometry.dimension); ++axis) {
+    points *= points_along(geometry.shape, geometry.spacing, axis) + 2 * reach;
     bonds *= 2 * reach;
   }
-  return kProgram + points * (8 * (kPlanes + kVectors * lattice.dimension) + bonds / 8);
+  return kProgram + points * (8 * (kPlanes + kVectors * geometry.dimension) + bonds / 8);
 }
 
 void check_memory(const GeometryInput& geometry) {
@@ -226,7 +225,7 @@ void check_memory(const GeometryInput& geometry) {
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
   if (need > have)
     throw InputError(
-        geometry.lattice.at,
+        geometry.at,
         fmt::format(
             "geometry: so many points need about {:.3g} GB of memory, this machine has {:.3g} GB; expected "
             "a larger spacing",
