@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/error.hpp"
+#include "base/nearest_name.hpp"
 
 namespace riven {
 namespace {
@@ -105,8 +106,11 @@ std::optional<std::size_t> CsvTable::find(std::string_view name) const {
 
 std::size_t CsvTable::column(std::string_view name) const {
   if (const auto found = find(name)) return *found;
+  std::vector<std::string> known;
+  for (const std::string& column : columns_) known.push_back(column.substr(0, column.find(" [")));
   throw InputError(Location{file_, header_line_},
-                   fmt::format("expected a column \"{}\"; there are: {}", name, fmt::join(columns_, ", ")));
+                   fmt::format("expected a column \"{}\"; there are: {}{}", name, fmt::join(columns_, ", "),
+                               did_you_mean(name, known)));
 }
 
 double CsvTable::number(std::size_t row, std::size_t column) const {

@@ -22,7 +22,9 @@ class CsvTable {
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
   [[nodiscard]] std::size_t rows() const { return lines_.size(); }
 
-  /// Line of a row in the file, from 1.
+  /// Line of the column names in the file, from 1.
+  [[nodiscard]] int header_line() const { return header_line_; }
+  /// The same of a row.
   [[nodiscard]] int line(std::size_t row) const { return lines_[row]; }
 
   /// Index of the column called `name` or `name [unit]`.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,16 +9,27 @@
 #include "base/error.hpp"
 #include "geometry/shape.hpp"
 #include "input/expression.hpp"
+#include "input/point_list.hpp"
 
 namespace riven {
 
 /// What the user wrote, parsed and checked, in SI units. `src/input/case_format.cpp` declares the format.
 
+struct PointsInput {               // [geometry] points = {...}
+  std::string file;                // CSV, relative to the case file
+  std::vector<double> size, from;  // m; of the box that the points fill, empty if not given
+  std::shared_ptr<const PointList> list;
+
+  [[nodiscard]] bool has_edges() const { return !size.empty(); }
+};
+
 struct GeometryInput {   // [geometry]
   Shape shape;           // the body; a box is centred at the origin unless `from` gives its lower corner
   int dimension = 2;     // number of entries of the box's size; 2 for a disc with a thickness
   double thickness = 1;  // m (2D), or m^2 (1D: key `area`)
-  double spacing = 0;    // m
+  double spacing = 0;    // m; of listed points the mean
+  std::optional<PointsInput> points;  // instead of a lattice
+  std::string bonds = "lattice";      // or "listed", as those of points
   Location at;
   double horizon = 0;  // m
   Location horizon_at;

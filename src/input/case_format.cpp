@@ -393,6 +393,7 @@ bool always() {
 std::vector<std::string> edge_names(const Case& of) {
   std::vector<std::string> names{"left", "right", "bottom", "top", "back", "front"};
   if (!std::holds_alternative<Box>(of.geometry.shape)) return {};
+  if (of.geometry.points && !of.geometry.points->has_edges()) return {};
   names.resize(2 * static_cast<std::size_t>(of.geometry.dimension));
   return names;
 }
@@ -409,7 +410,7 @@ Format describe(Case& c) {
       .doc = "A case: one text file in TOML that says all about one simulation.",
       .keys = {Key{"title", Text{&c.title}, "What the case shows."}.required(),
                Key{"source", Text{&c.source}, "Where the problem was published."}.otherwise("\"\""),
-               Key{"geometry", Table{[&c] { return describe(c.geometry); }, always}, "The body."}.required(),
+               Key{"geometry", Table{[&c] { return describe_geometry(c); }, always}, "The body."}.required(),
                Key{"hole", tables(c.holes, [&c](HoleInput& h, std::size_t) { return describe(h, c); }),
                    "Holes."},
                Key{"crack", tables(c.cracks, [&c](CrackInput& k, std::size_t) { return describe(k, c); }),

@@ -10,8 +10,8 @@ namespace riven {
 Case parse_case(std::string_view text, const std::string& file, const std::vector<std::string>& overrides) {
   const Source source(text, file, overrides);
   Case result;
+  result.file = file;  // tables stand beside it
   Reader(source, result).read_all();
-  result.file = file;
   return result;
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <memory>
 
+#include "input/points_format.hpp"
+
 namespace riven {
 namespace {
 
@@ -13,6 +15,7 @@ using kind::Place;
 using kind::Quantities;
 using kind::Quantity;
 using kind::Table;
+using kind::Text;
 
 // Half-sizes beyond the body's dimension are infinite; this is how many are not.
 std::size_t finite_directions(const Box& box) {
@@ -208,22 +211,37 @@ std::vector<Key> shape_keys(std::optional<Shape>& shape) {
           "A ball; three dimensions only."}};
 }
 
-Format describe(GeometryInput& geometry) {
+Format describe_geometry(Case& c) {
+  GeometryInput& geometry = c.geometry;
   const auto is_box = [&geometry] { return std::holds_alternative<Box>(geometry.shape); };
-  return {.doc = "The body: a shape filled with points on a square or cubic lattice, and the horizon.",
+  const auto has_points = [&geometry] { return geometry.points.has_value(); };
+  return {.doc =
+              "The body: a shape filled with points on a square or cubic lattice, or points from a file; and "
+              "the horizon.",
           .at = &geometry.at,
-          .keys = {Key{"box", Table{[&geometry] { return describe_lattice_box(geometry); }, is_box},
+          .keys = {Key{"box",
+                       Table{[&geometry] { return describe_lattice_box(geometry); },
+                             [=] { return is_box() && !has_points(); }},
                        "A bar, rectangle or box."},
                    Key{"disc",
                        Table{[&geometry] { return describe_lattice_disc(geometry); },
-                             [is_box] { return !is_box(); }},
+                             [=] { return !is_box() && !has_points(); }},
                        "A disc."},
+                   Key{"points", Table{[&geometry, &c] { return describe_points(geometry, c); }, has_points},
+                       "Points from a file."},
                    Key{"horizon", Quantity{&geometry.horizon, dimension::length, positive},
                        "Radius within which points interact."}
-                       .otherwise("\"3 dx\"")},
-          .groups = {{{"box", "disc"}}},
+                       .otherwise("\"3 dx\""),
+                   Key{"bonds", Text{&geometry.bonds, {"lattice", "listed"}},
+                       "How bonds are kept: as bits of the lattice, or in lists, with the same results but "
+                       "slower and in more memory. Bonds of points from a file are always listed."}
+                       .otherwise("\"lattice\"")},
+          .groups = {{{"box", "disc", "points"}}},
           .finish = [&geometry](const Check& check) {
             geometry.horizon_at = check.at("horizon");
+            if (geometry.points && check.given("bonds") && geometry.bonds != "listed")
+              check.fail("bonds", "points from a file are on no lattice; expected \"listed\", or nothing");
+            if (geometry.points) geometry.bonds = "listed";
             // Rounding must not refuse "1 dx".
             if (geometry.horizon < geometry.spacing * (1 - 1e-9))
               check.fail(

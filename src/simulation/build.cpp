@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "body/lattice_body.hpp"
+#include "body/listed_body.hpp"
 #include "load/mirror.hpp"
 #include "peridynamics/membrane.hpp"
 #include "simulation/preflight.hpp"
@@ -110,16 +111,48 @@ Faces loaded_faces(const Case& in) {
   return faces;
 }
 
+/// A point on a loaded edge would be its own mirror image.
+void check_off_loaded_faces(const PointList& points, double spacing, const ListedBodyInput& body) {
+  constexpr double kOnFace = 0.01;  // spacings
+  for (std::size_t face = 0; face < kFaces; ++face)
+    for (std::size_t n = 0; n < points.position.size() && body.mirrored.test(face); ++n)
+      if (std::abs(points.position[n][face / 2] - body.faces[face]) < kOnFace * spacing)
+        throw InputError(points.at(n),
+                         fmt::format("the point lies on the edge \"{}\", which has a load; expected points "
+                                     "inside, such as the centres of cells",
+                                     kFaceNames[face]));
+}
+
+Body make_points_body(const Case& in) {
+  const GeometryInput& geometry = in.geometry;
+  const PointList& points = *geometry.points->list;
+  const auto& box = std::get<Box>(geometry.shape);
+  ListedBodyInput listed{.dimension = geometry.dimension,
+                         .position = points.position,
+                         .volume = points.volume,
+                         .thickness = geometry.thickness,
+                         .horizon = geometry.horizon,
+                         .faces = {},
+                         .defects = make_defects(in),
+                         .mirrored = loaded_faces(in)};
+  for (std::size_t face = 0; face < 2 * static_cast<std::size_t>(geometry.dimension); ++face)
+    listed.faces[face] = box.center[face / 2] + (face % 2 == 0 ? -1 : 1) * box.half_size[face / 2];
+  check_off_loaded_faces(points, geometry.spacing, listed);
+  return make_listed_body(listed);
+}
+
 Body make_body(const Case& in) {
   const GeometryInput& geometry = in.geometry;
   try {
-    return make_lattice_body({.dimension = geometry.dimension,
-                              .shape = geometry.shape,
-                              .thickness = geometry.thickness,
-                              .spacing = geometry.spacing,
-                              .horizon = geometry.horizon,
-                              .defects = make_defects(in),
-                              .mirrored = loaded_faces(in)});
+    if (geometry.points) return make_points_body(in);
+    Body body = make_lattice_body({.dimension = geometry.dimension,
+                                   .shape = geometry.shape,
+                                   .thickness = geometry.thickness,
+                                   .spacing = geometry.spacing,
+                                   .horizon = geometry.horizon,
+                                   .defects = make_defects(in),
+                                   .mirrored = loaded_faces(in)});
+    return geometry.bonds == "listed" ? listed(body) : body;
   } catch (const InputError& error) {
     const std::string what = error.what();
     if (what.starts_with(in.file.string())) throw;

@@ -83,6 +83,8 @@ Case with_absolute_paths(Case input) {
       if (!expect.file.empty()) expect.file = (folder / expect.file).lexically_normal().string();
   };
   fix(input.expects);
+  if (input.geometry.points)
+    input.geometry.points->file = (folder / input.geometry.points->file).lexically_normal().string();
   if (input.short_run) fix(input.short_run->expect);
   return input;
 }

@@ -3,7 +3,7 @@
 import re
 import unittest
 
-from program import HOLE, MOVING, PLAIN, ProgramTest, replaced
+from program import BOX, HOLE, MOVING, PLAIN, POINTS, ProgramTest, lattice_csv, replaced
 
 EXPECT = """
 [[expect]]
@@ -24,6 +24,8 @@ SET = """
 [set.{name}]
 where = "{where}"
 """
+
+CLOUD = replaced(PLAIN, BOX, POINTS)
 
 # case, what is replaced, by what, the key's line as a fragment (the message must name its line), part of the message
 MISTAKES = [
@@ -83,6 +85,17 @@ MISTAKES = [
      "displacement is not written"),
     ("state between", PLAIN + FIELD, "points.csv", "between.csv", "[[expect]]", "no output state at 1.3"),
     ("states beyond", PLAIN + FIELD, "points.csv", "beyond.csv", "[[expect]]", "none of the run's output states"),
+    ("no file of points", CLOUD, "sheet.csv", "shet.csv", "points =", "shet.csv: there is no such file"),
+    ("points outside of the box", CLOUD, 'size = ["0.2 m", "0.2 m"]', 'size = ["0.1 m", "0.2 m"]', "points =",
+     "sheet.csv:2: the point at (-0.095, -0.095) m lies outside of the box"),
+    ("points on a loaded edge", CLOUD, 'size = ["0.2 m", "0.2 m"]', 'size = ["0.19 m", "0.2 m"]', "[geometry]",
+     'sheet.csv:2: the point lies on the edge "left"'),
+    ("edges of points without a box", CLOUD, ', box = { size = ["0.2 m", "0.2 m"] }', "", "on = [",
+     'points have no edge "left" as long as nobody says where the body ends; expected box = '),
+    ("points without a thickness", CLOUD, ', thickness = "10 mm"', "", "points =", "thickness: missing"),
+    ("points and a box", CLOUD, POINTS, POINTS + "\n" + BOX, "points = {", "given together with"),
+    ("bonds of points on a lattice", CLOUD, POINTS, POINTS + '\nbonds = "lattice"', "bonds =", 'expected "listed"'),
+    ("unknown bonds", PLAIN, BOX, BOX + '\nbonds = "list"', "bonds =", 'did you mean "listed"?'),
     ("broken reference", PLAIN + FIELD, "points.csv", "broken.csv", "[[expect]]", "broken.csv:2"),
 ]
 
@@ -91,6 +104,7 @@ class WrongInput(ProgramTest):
     def setUp(self):
         super().setUp()
         header = "lambda,X_m,Y_m,ux_m,uy_m\n"
+        self.write("sheet.csv", lattice_csv(20, 10))
         self.write("points.csv", header + "1.4,0.01,0,0.004,0\n")
         self.write("between.csv", header + "1.2,0.01,0,0.002,0\n1.3,0.01,0,0.003,0\n")
         self.write("beyond.csv", header + "3,0.01,0,0.02,0\n")
