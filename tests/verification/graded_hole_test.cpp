@@ -46,8 +46,8 @@ double error_of_force(int side) {
 }
 
 TEST(GradedHole, ForceGoesToTheLocalSolution) {
-  // Points are in the hole or not, as a whole, so that the hole's area has an error of many small parts: not
-  // monotone, but bounded by a multiple of 1/N^2. Measured: 3.2e-2, 2.9e-2, 1.6e-3, 0.8e-3; 100: -1.5e-3.
+  // The error of the grading falls with 1/N^2. Points are in the hole or not, as a whole, which adds an error
+  // that is not monotone. Measured: 3.2e-2, 2.9e-2, 1.6e-3, 0.8e-3; 100: -1.5e-3.
   for (const int side : {20, 28, 40, 56})
     EXPECT_LT(std::abs(error_of_force(side)), 25.0 / (side * side)) << side;
 }
