@@ -1,21 +1,23 @@
 // Rates of the membrane model on a square sheet with a hole: directed bonds per second of one force
-// evaluation, and bytes that the model holds per point and per directed bond. Run: riven_bench
-// [--benchmark_filter=...]
+// evaluation, and bytes that the model holds per point and per directed bond; for bonds on a lattice and for
+// the same bonds in lists. Run: riven_bench [--benchmark_filter=...]
 
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "body/lattice_body.hpp"
+#include "body/listed_body.hpp"
 #include "peridynamics/membrane.hpp"
 
 namespace {
 
 using namespace riven;
 
-Membrane make_sheet(int points_per_side) {
+Body make_sheet(int points_per_side) {
   constexpr double endless = std::numeric_limits<double>::infinity();
   LatticeBodyInput in;
   in.shape = Box{{}, {0.25, 0.25, endless}};
@@ -24,24 +26,26 @@ Membrane make_sheet(int points_per_side) {
   in.horizon = 3 * in.spacing;
   in.defects.holes.push_back(Disc{{}, 0.08});
   in.mirrored = 0b1111;
-  return {make_lattice_body(in), Material{"rubber", NeoHookean{18e6}, 1100}, 4.0};
+  return make_lattice_body(in);
 }
 
 /// Every stored point stretched by half; ghosts included.
 std::vector<double> stretched(const Membrane& sheet) {
   std::vector<double> u(sheet.dofs(), 0.0);
-  const Lattice& lattice = sheet.body().on_lattice()->lattice;
-  lattice.for_each_cell([&](const Cell& cell, std::size_t i) {
-    const Point x = lattice.position(cell);
+  const Body& body = sheet.body();
+  const auto stretch = [&](std::size_t i) {
+    const Point x = body.position(i);
     u[i] = 0.5 * x[0];
-    u[lattice.size() + i] = 0.5 * x[1];
-  });
+    u[body.size() + i] = 0.5 * x[1];
+  };
+  for (const std::size_t i : body.points) stretch(i);
+  for (const GhostPoint& ghost : body.ghosts) stretch(ghost.point);
   return u;
 }
 
-void force(benchmark::State& state) {
+void measure_force(benchmark::State& state, Body body) {
   omp_set_num_threads(static_cast<int>(state.range(1)));
-  Membrane sheet = make_sheet(static_cast<int>(state.range(0)));
+  Membrane sheet(std::move(body), Material{"rubber", NeoHookean{18e6}, 1100}, 4.0);
   const std::vector<double> u = stretched(sheet);
   std::vector<double> f(sheet.dofs());
   for (auto _ : state) {
@@ -55,7 +59,20 @@ void force(benchmark::State& state) {
   state.counters["bytes/bond"] = static_cast<double>(sheet.bytes()) / bonds;
 }
 
+void force(benchmark::State& state) {
+  measure_force(state, make_sheet(static_cast<int>(state.range(0))));
+}
+
+void force_listed(benchmark::State& state) {
+  measure_force(state, listed(make_sheet(static_cast<int>(state.range(0)))));
+}
+
 BENCHMARK(force)
+    ->ArgNames({"side", "threads"})
+    ->ArgsProduct({{100, 400, 1000}, {1, 2}})
+    ->UseRealTime()
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK(force_listed)
     ->ArgNames({"side", "threads"})
     ->ArgsProduct({{100, 400, 1000}, {1, 2}})
     ->UseRealTime()

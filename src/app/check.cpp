@@ -49,14 +49,25 @@ void print_tables(const Case& input) {
   }
 }
 
+std::string extent_text(const Body& body) {
+  std::string text;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(body.dimension); ++axis)
+    text += fmt::format("{}{} {:g} to {:g} m", axis == 0 ? "" : ", ", "xyz"[axis], body.faces[2 * axis],
+                        body.faces[2 * axis + 1]);
+  return text;
+}
+
 void print_model(const Simulation& simulation) {
   const Model& model = *simulation.model;
   const Body& body = *simulation.body;
   double volume = 0;
   for (const std::size_t i : body.points) volume += body.volume[i];
+  if (const auto& points = simulation.input.geometry.points)
+    fmt::print("# points: {} in {}, filling {}\n", points->list->position.size(), points->list->file,
+               extent_text(body));
   const LatticeBonds* on = body.on_lattice();
   const std::string cells = on == nullptr
-                                ? std::string("anywhere, mean spacing")
+                                ? std::string("with listed bonds, mean spacing")
                                 : fmt::format("of {} cells, spacing", fmt::join(on->lattice.cells(), " x "));
   fmt::print("# body: {} points {} {:.6g} m, volume {:.6g} m^3, {} ghost points behind loaded edges\n",
              model.points(), cells, body.spacing, volume, body.ghosts.size());

@@ -51,10 +51,10 @@ int compare(const CompareOptions& options) {
   const Case input = read_case(folder.resolved());
   double exclude_within = 0;
   if (!options.exclude_within.empty())
-    exclude_within = parse_quantity(
-        options.exclude_within, dimension::length,
-        {.dx = input.geometry.lattice.spacing, .horizon = input.geometry.horizon, .variables = {}},
-        Origin{"--exclude-within", {}});
+    exclude_within =
+        parse_quantity(options.exclude_within, dimension::length,
+                       {.dx = input.geometry.spacing, .horizon = input.geometry.horizon, .variables = {}},
+                       Origin{"--exclude-within", {}});
   const FieldDeviation deviation = compare_fields(options.folder, read_reference_points(options.reference),
                                                   compare_settings(input, exclude_within));
   print(deviation, options.json);

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "body/bond_rules.hpp"
+#include "geometry/cubes.hpp"
 
 namespace riven {
 
@@ -16,51 +17,6 @@ namespace {
 // A family that holds less than this share of the body's median is cut by a free edge: one that lacks what
 // lies beyond 0.7 horizons does. Irregular points alone make families differ by a few percent.
 constexpr double kCompleteShare = 0.9;
-
-/// Points sorted into cubes of one horizon, to find neighbours.
-class Cubes {
- public:
-  Cubes(const std::vector<Point>& points, int dimension, double size)
-      : points_(points), size_(size), dimension_(static_cast<std::size_t>(dimension)) {
-    for (std::size_t n = 0; n < points.size(); ++n) sorted_.push_back({cube_of(points[n]), n});
-    std::sort(sorted_.begin(), sorted_.end());
-  }
-
-  /// Numbers of the points within `distance` (at most the cubes' size) of x, ascending.
-  [[nodiscard]] std::vector<std::size_t> within(const Point& x, double distance) const {
-    std::vector<std::size_t> found;
-    const Key center = cube_of(x);
-    const auto along = [&](std::size_t axis) { return axis < dimension_ ? 1 : 0; };
-    for (int i = -along(0); i <= along(0); ++i)
-      for (int j = -along(1); j <= along(1); ++j) {
-        // Cubes that differ in z alone follow one another.
-        const Key first{center[0] + i, center[1] + j, center[2] - along(2)};
-        const Key last{first[0], first[1], center[2] + along(2)};
-        auto at = std::lower_bound(sorted_.begin(), sorted_.end(), Entry{first, 0});
-        for (; at != sorted_.end() && at->first <= last; ++at)
-          if (std::hypot(points_[at->second][0] - x[0], points_[at->second][1] - x[1],
-                         points_[at->second][2] - x[2]) <= distance)
-            found.push_back(at->second);
-      }
-    std::sort(found.begin(), found.end());
-    return found;
-  }
-
- private:
-  using Key = std::array<std::int64_t, 3>;
-  using Entry = std::pair<Key, std::size_t>;
-
-  [[nodiscard]] Key cube_of(const Point& x) const {
-    Key key{};
-    for (std::size_t a = 0; a < dimension_; ++a) key[a] = static_cast<std::int64_t>(std::floor(x[a] / size_));
-    return key;
-  }
-
-  const std::vector<Point>& points_;
-  double size_;
-  std::size_t dimension_;
-  std::vector<Entry> sorted_;
-};
 
 class ListedBodyMaker {
  public:

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "geometry/shape.hpp"
 #include "input/expression.hpp"
+#include "input/point_list.hpp"
 
 namespace riven {
 
@@ -23,16 +24,22 @@ struct TableInput {  // [table.NAME]: a function that formulas may call
   Location at;
 };
 
-struct LatticeInput {    // [geometry] box = {...} or disc = {...}
+struct PointsInput {               // [geometry] points = {...}
+  std::string file;                // CSV, relative to the case file
+  std::vector<double> size, from;  // m; of the box that the points fill, empty if not given
+  std::shared_ptr<const PointList> list;
+
+  [[nodiscard]] bool has_edges() const { return !size.empty(); }
+};
+
+struct GeometryInput {   // [geometry]
   Shape shape;           // the body; a box is centred at the origin unless `from` gives its lower corner
   int dimension = 2;     // number of entries of the box's size; 2 for a disc with a thickness
   double thickness = 1;  // m (2D), or m^2 (1D: key `area`)
-  double spacing = 0;    // m
+  double spacing = 0;    // m; of listed points the mean
+  std::optional<PointsInput> points;  // instead of a lattice
+  std::string bonds = "lattice";      // or "listed", as those of points
   Location at;
-};
-
-struct GeometryInput {
-  LatticeInput lattice;
   double horizon = 0;  // m
   Location horizon_at;
 };

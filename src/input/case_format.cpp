@@ -64,7 +64,7 @@ void check_new_name(const std::vector<Item>& items, const Item& item, const Chec
 }
 
 void check_shape(const Shape& shape, const Case& c, const Check& check) {
-  if (std::holds_alternative<Ball>(shape) && c.geometry.lattice.dimension != 3)
+  if (std::holds_alternative<Ball>(shape) && c.geometry.dimension != 3)
     check.fail("ball", "belongs to bodies in three dimensions; expected disc or box");
 }
 
@@ -88,8 +88,7 @@ Format describe(CrackInput& crack, const Case& c) {
           .keys = {Key{"from", Place{&crack.segment.a}, "One end."}.required(),
                    Key{"to", Place{&crack.segment.b}, "The other end."}.required()},
           .finish = [&crack, &c](const Check& check) {
-            if (c.geometry.lattice.dimension != 2)
-              check.fail("from", "cracks belong to bodies in two dimensions");
+            if (c.geometry.dimension != 2) check.fail("from", "cracks belong to bodies in two dimensions");
             if (crack.segment.a == crack.segment.b)
               check.fail("to", "is the same place as from; expected a crack with a length");
           }};
@@ -414,8 +413,9 @@ bool always() {
 
 std::vector<std::string> edge_names(const Case& of) {
   std::vector<std::string> names{"left", "right", "bottom", "top", "back", "front"};
-  if (!std::holds_alternative<Box>(of.geometry.lattice.shape)) return {};
-  names.resize(2 * static_cast<std::size_t>(of.geometry.lattice.dimension));
+  if (!std::holds_alternative<Box>(of.geometry.shape)) return {};
+  if (of.geometry.points && !of.geometry.points->has_edges()) return {};
+  names.resize(2 * static_cast<std::size_t>(of.geometry.dimension));
   return names;
 }
 
@@ -433,7 +433,7 @@ Format describe(Case& c) {
                Key{"source", Text{&c.source}, "Where the problem was published."}.otherwise("\"\""),
                Key{"table", named_tables(c.tables, [&c](TableInput& t) { return describe(t, c); }),
                    "Functions given by points."},
-               Key{"geometry", Table{[&c] { return describe(c.geometry); }, always}, "The body."}.required(),
+               Key{"geometry", Table{[&c] { return describe_geometry(c); }, always}, "The body."}.required(),
                Key{"hole", tables(c.holes, [&c](HoleInput& h, std::size_t) { return describe(h, c); }),
                    "Holes."},
                Key{"crack", tables(c.cracks, [&c](CrackInput& k, std::size_t) { return describe(k, c); }),

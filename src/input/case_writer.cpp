@@ -149,7 +149,7 @@ class CaseWriter {
 
 std::string resolved_case(const Case& of) {
   Case copy = of;  // the format points at members that a reader may write
-  return CaseWriter(of.geometry.lattice.dimension).write(describe(copy));
+  return CaseWriter(of.geometry.dimension).write(describe(copy));
 }
 
 }  // namespace riven

@@ -156,7 +156,7 @@ Symbols Reader::symbols(std::vector<std::string> variables) const {
   const GeometryInput& g = case_.geometry;
   Symbols known{{}, {}, std::move(variables), {}};
   for (const TableInput& table : case_.tables) known.tables.push_back(table.function);
-  if (g.lattice.spacing > 0) known.dx = g.lattice.spacing;
+  if (g.spacing > 0) known.dx = g.spacing;
   if (g.horizon > 0) known.horizon = g.horizon;
   return known;
 }

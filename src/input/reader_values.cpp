@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -141,7 +142,7 @@ void Reader::read_value(const kind::AnyUnit& to, const toml::node& node, const O
 }
 
 void Reader::read_value(const kind::Place& to, const toml::node& node, const Origin& origin) {
-  const auto count = static_cast<std::size_t>(case_.geometry.lattice.dimension);
+  const auto count = static_cast<std::size_t>(case_.geometry.dimension);
   const toml::array& list = list_of(node, origin, fmt::format("a list of {} lengths", count));
   if (list.size() != count)
     origin.fail(fmt::format("found {} entries; expected {}, one per direction", list.size(), count));
@@ -174,7 +175,7 @@ ComponentInput Reader::component(const toml::node& node, const Origin& origin) c
 }
 
 void Reader::read_value(const kind::Components& to, const toml::node& node, const Origin& origin) {
-  const auto count = static_cast<std::size_t>(case_.geometry.lattice.dimension);
+  const auto count = static_cast<std::size_t>(case_.geometry.dimension);
   const toml::array& list =
       list_of(node, origin, fmt::format("a list of {} entries, one per direction", count));
   if (list.size() != count)
@@ -187,6 +188,13 @@ void Reader::read_value(const kind::Components& to, const toml::node& node, cons
 Named Reader::part(const toml::node& node, const Origin& origin) const {
   const std::string& name = string_of(node, origin, "the name of an edge or a set");
   const std::vector<std::string> known = part_names(case_);
+  const std::array<std::string_view, 6> edges{"left", "right", "bottom", "top", "back", "front"};
+  if (case_.geometry.points && !case_.geometry.points->has_edges() &&
+      std::find(edges.begin(), edges.end(), name) != edges.end())
+    origin.fail(fmt::format(
+        "points have no edge \"{}\" as long as nobody says where the body ends; expected box = {{ size = "
+        "[...], from = [...] }} in geometry.points, or a set",
+        name));
   if (std::find(known.begin(), known.end(), name) == known.end())
     origin.fail(fmt::format("\"{}\" is neither an edge of the body nor a set; known are {}{}", name,
                             known.empty() ? "none (a disc has no edges)" : listed(known),

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <memory>
 
+#include "input/points_format.hpp"
+
 namespace riven {
 namespace {
 
@@ -13,6 +15,7 @@ using kind::Place;
 using kind::Quantities;
 using kind::Quantity;
 using kind::Table;
+using kind::Text;
 
 // Half-sizes beyond the body's dimension are infinite; this is how many are not.
 std::size_t finite_directions(const Box& box) {
@@ -85,17 +88,17 @@ struct LatticeBoxForm {
   std::vector<int> points;
 };
 
-LatticeBoxForm lattice_box_form(const LatticeInput& lattice) {
+LatticeBoxForm lattice_box_form(const GeometryInput& geometry) {
   LatticeBoxForm form;
-  const Box* box = std::get_if<Box>(&lattice.shape);
-  if (box == nullptr || lattice.spacing == 0) return form;
+  const Box* box = std::get_if<Box>(&geometry.shape);
+  if (box == nullptr || geometry.spacing == 0) return form;
   for (std::size_t i = 0; i < finite_directions(*box); ++i) {
     form.size.push_back(2 * box->half_size[i]);
     form.from.push_back(box->center[i] - box->half_size[i]);
   }
-  if (lattice.dimension == 2) form.thickness = lattice.thickness;
-  if (lattice.dimension == 1) form.area = lattice.thickness;
-  form.spacing = lattice.spacing;
+  if (geometry.dimension == 2) form.thickness = geometry.thickness;
+  if (geometry.dimension == 1) form.area = geometry.thickness;
+  form.spacing = geometry.spacing;
   return form;
 }
 
@@ -133,7 +136,7 @@ void check_lattice_box(const LatticeBoxForm& form, const Check& check) {
     check.fail("area", fmt::format("belongs to bodies in one dimension; size has {} entries", dimension));
 }
 
-LatticeInput to_lattice(const LatticeBoxForm& form, const Check& check) {
+void fill_box(const LatticeBoxForm& form, const Check& check, GeometryInput& geometry) {
   check_lattice_box(form, check);
   constexpr double endless = std::numeric_limits<double>::infinity();
   Box box{{}, {endless, endless, endless}};
@@ -141,21 +144,19 @@ LatticeInput to_lattice(const LatticeBoxForm& form, const Check& check) {
     box.half_size[i] = form.size[i] / 2;
     if (!form.from.empty()) box.center[i] = form.from[i] + form.size[i] / 2;
   }
-  LatticeInput lattice;
-  lattice.shape = box;
-  lattice.dimension = static_cast<int>(form.size.size());
-  lattice.thickness = form.thickness.value_or(form.area.value_or(1));
-  lattice.spacing = spacing_of(form, check);
+  geometry.shape = box;
+  geometry.dimension = static_cast<int>(form.size.size());
+  geometry.thickness = form.thickness.value_or(form.area.value_or(1));
+  geometry.spacing = spacing_of(form, check);
   for (const double size : form.size)
-    if (lattice.spacing > size)
+    if (geometry.spacing > size)
       check.fail(
           form.spacing ? "spacing" : "points",
-          fmt::format("the spacing {:.6g} m is larger than the body ({:.6g} m)", lattice.spacing, size));
-  return lattice;
+          fmt::format("the spacing {:.6g} m is larger than the body ({:.6g} m)", geometry.spacing, size));
 }
 
-Format describe_lattice_box(LatticeInput& lattice) {
-  const auto form = std::make_shared<LatticeBoxForm>(lattice_box_form(lattice));
+Format describe_lattice_box(GeometryInput& geometry) {
+  const auto form = std::make_shared<LatticeBoxForm>(lattice_box_form(geometry));
   return {
       .doc = "A bar, rectangle or box, centred at the origin unless `from` is given.",
       .keys = {Key{"size", Quantities{&form->size, dimension::length, positive, 3},
@@ -171,21 +172,17 @@ Format describe_lattice_box(LatticeInput& lattice) {
                Key{"points", Integers{&form->points, 1},
                    "Number of points along the axes, instead of the spacing."}},
       .groups = {{{"spacing", "points"}}},
-      .finish = [form, &lattice](const Check& check) {
-        const Location at = lattice.at;  // set by the table around this one
-        lattice = to_lattice(*form, check);
-        lattice.at = at;
-      }};
+      .finish = [form, &geometry](const Check& check) { fill_box(*form, check, geometry); }};
 }
 
-Format describe_lattice_disc(LatticeInput& lattice) {
+Format describe_lattice_disc(GeometryInput& geometry) {
   struct Form {
     Disc disc;
     double thickness = 0, spacing = 0;
   };
   const auto form = std::make_shared<Form>();
-  if (const Disc* disc = std::get_if<Disc>(&lattice.shape))
-    *form = {*disc, lattice.thickness, lattice.spacing};
+  if (const Disc* disc = std::get_if<Disc>(&geometry.shape))
+    *form = {*disc, geometry.thickness, geometry.spacing};
   return {.doc = "A disc.",
           .keys = {Key{"center", Place{&form->disc.center}, "Its centre; the origin unless given."},
                    Key{"radius", Quantity{&form->disc.radius, dimension::length, positive}, "Its radius."}
@@ -195,12 +192,12 @@ Format describe_lattice_disc(LatticeInput& lattice) {
                    Key{"spacing", Quantity{&form->spacing, dimension::length, positive},
                        "Distance of the points; known as `dx` from here on."}
                        .required()},
-          .finish = [form, &lattice](const Check& check) {
+          .finish = [form, &geometry](const Check& check) {
             if (form->spacing > form->disc.radius) check.fail("spacing", "is larger than the radius");
-            lattice.shape = form->disc;
-            lattice.dimension = 2;
-            lattice.thickness = form->thickness;
-            lattice.spacing = form->spacing;
+            geometry.shape = form->disc;
+            geometry.dimension = 2;
+            geometry.thickness = form->thickness;
+            geometry.spacing = form->spacing;
           }};
 }
 
@@ -214,30 +211,44 @@ std::vector<Key> shape_keys(std::optional<Shape>& shape) {
           "A ball; three dimensions only."}};
 }
 
-Format describe(GeometryInput& geometry) {
-  LatticeInput& lattice = geometry.lattice;
-  const auto is_box = [&lattice] { return std::holds_alternative<Box>(lattice.shape); };
-  return {.doc = "The body: a shape filled with points on a square or cubic lattice, and the horizon.",
-          .at = &lattice.at,
-          .keys = {Key{"box", Table{[&lattice] { return describe_lattice_box(lattice); }, is_box},
+Format describe_geometry(Case& c) {
+  GeometryInput& geometry = c.geometry;
+  const auto is_box = [&geometry] { return std::holds_alternative<Box>(geometry.shape); };
+  const auto has_points = [&geometry] { return geometry.points.has_value(); };
+  return {.doc =
+              "The body: a shape filled with points on a square or cubic lattice, or points from a file; and "
+              "the horizon.",
+          .at = &geometry.at,
+          .keys = {Key{"box",
+                       Table{[&geometry] { return describe_lattice_box(geometry); },
+                             [=] { return is_box() && !has_points(); }},
                        "A bar, rectangle or box."},
                    Key{"disc",
-                       Table{[&lattice] { return describe_lattice_disc(lattice); },
-                             [is_box] { return !is_box(); }},
+                       Table{[&geometry] { return describe_lattice_disc(geometry); },
+                             [=] { return !is_box() && !has_points(); }},
                        "A disc."},
+                   Key{"points", Table{[&geometry, &c] { return describe_points(geometry, c); }, has_points},
+                       "Points from a file."},
                    Key{"horizon", Quantity{&geometry.horizon, dimension::length, positive},
                        "Radius within which points interact."}
-                       .otherwise("\"3 dx\"")},
-          .groups = {{{"box", "disc"}}},
+                       .otherwise("\"3 dx\""),
+                   Key{"bonds", Text{&geometry.bonds, {"lattice", "listed"}},
+                       "How bonds are kept: as bits of the lattice, or in lists, with the same results but "
+                       "slower and in more memory. Bonds of points from a file are always listed."}
+                       .otherwise("\"lattice\"")},
+          .groups = {{{"box", "disc", "points"}}},
           .finish = [&geometry](const Check& check) {
             geometry.horizon_at = check.at("horizon");
+            if (geometry.points && check.given("bonds") && geometry.bonds != "listed")
+              check.fail("bonds", "points from a file are on no lattice; expected \"listed\", or nothing");
+            if (geometry.points) geometry.bonds = "listed";
             // Rounding must not refuse "1 dx".
-            if (geometry.horizon < geometry.lattice.spacing * (1 - 1e-9))
+            if (geometry.horizon < geometry.spacing * (1 - 1e-9))
               check.fail(
                   "horizon",
                   fmt::format(
                       "{:.6g} m is below the spacing of {:.6g} m; expected a few spacings, such as \"3 dx\"",
-                      geometry.horizon, geometry.lattice.spacing));
+                      geometry.horizon, geometry.spacing));
           }};
 }
 

@@ -8,6 +8,6 @@ namespace riven {
 std::vector<Key> shape_keys(std::optional<Shape>& shape);
 
 /// [geometry]
-Format describe(GeometryInput& geometry);
+Format describe_geometry(Case& c);
 
 }  // namespace riven

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "body/lattice_body.hpp"
+#include "body/listed_body.hpp"
 #include "load/mirror.hpp"
 #include "peridynamics/bond_membrane.hpp"
 #include "peridynamics/membrane.hpp"
@@ -58,7 +59,7 @@ std::vector<Point> outline(const Shape& shape) {
 
 /// A defect that the body does not hold is a slip of a sign or a unit.
 void check_places(const Case& in, double touch) {
-  const Shape& body = in.geometry.lattice.shape;
+  const Shape& body = in.geometry.shape;
   for (const HoleInput& hole : in.holes)
     if (!overlap(hole.shape, body, touch))
       throw InputError(hole.at, "hole: lies outside of the body; expected one that cuts it");
@@ -90,7 +91,7 @@ Defects make_defects(const Case& in) {
     placed.push_back({inclusion.shape, inclusion.at});
   }
   for (const CrackInput& crack : in.cracks) defects.cracks.push_back(crack.segment);
-  const double touch = 1e-6 * in.geometry.lattice.spacing;
+  const double touch = 1e-6 * in.geometry.spacing;
   check_places(in, touch);
   for (std::size_t a = 0; a < placed.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)
@@ -111,20 +112,52 @@ Faces loaded_faces(const Case& in) {
   return faces;
 }
 
+/// A point on a loaded edge would be its own mirror image.
+void check_off_loaded_faces(const PointList& points, double spacing, const ListedBodyInput& body) {
+  constexpr double kOnFace = 0.01;  // spacings
+  for (std::size_t face = 0; face < kFaces; ++face)
+    for (std::size_t n = 0; n < points.position.size() && body.mirrored.test(face); ++n)
+      if (std::abs(points.position[n][face / 2] - body.faces[face]) < kOnFace * spacing)
+        throw InputError(points.at(n),
+                         fmt::format("the point lies on the edge \"{}\", which has a load; expected points "
+                                     "inside, such as the centres of cells",
+                                     kFaceNames[face]));
+}
+
+Body make_points_body(const Case& in) {
+  const GeometryInput& geometry = in.geometry;
+  const PointList& points = *geometry.points->list;
+  const auto& box = std::get<Box>(geometry.shape);
+  ListedBodyInput listed{.dimension = geometry.dimension,
+                         .position = points.position,
+                         .volume = points.volume,
+                         .thickness = geometry.thickness,
+                         .horizon = geometry.horizon,
+                         .faces = {},
+                         .defects = make_defects(in),
+                         .mirrored = loaded_faces(in)};
+  for (std::size_t face = 0; face < 2 * static_cast<std::size_t>(geometry.dimension); ++face)
+    listed.faces[face] = box.center[face / 2] + (face % 2 == 0 ? -1 : 1) * box.half_size[face / 2];
+  check_off_loaded_faces(points, geometry.spacing, listed);
+  return make_listed_body(listed);
+}
+
 Body make_body(const Case& in) {
-  const LatticeInput& lattice = in.geometry.lattice;
+  const GeometryInput& geometry = in.geometry;
   try {
-    return make_lattice_body({.dimension = lattice.dimension,
-                              .shape = lattice.shape,
-                              .thickness = lattice.thickness,
-                              .spacing = lattice.spacing,
-                              .horizon = in.geometry.horizon,
-                              .defects = make_defects(in),
-                              .mirrored = loaded_faces(in)});
+    if (geometry.points) return make_points_body(in);
+    Body body = make_lattice_body({.dimension = geometry.dimension,
+                                   .shape = geometry.shape,
+                                   .thickness = geometry.thickness,
+                                   .spacing = geometry.spacing,
+                                   .horizon = geometry.horizon,
+                                   .defects = make_defects(in),
+                                   .mirrored = loaded_faces(in)});
+    return geometry.bonds == "listed" ? listed(body) : body;
   } catch (const InputError& error) {
     const std::string what = error.what();
     if (what.starts_with(in.file.string())) throw;
-    throw InputError(lattice.at, "geometry: " + what);
+    throw InputError(geometry.at, "geometry: " + what);
   }
 }
 

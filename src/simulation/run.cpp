@@ -97,6 +97,8 @@ Case with_paths_from(const std::filesystem::path& result, Case input) {
         expect.file = fs::weakly_canonical(folder / expect.file).lexically_relative(result).string();
   };
   fix(input.expects);
+  if (input.geometry.points)
+    input.geometry.points->file = (folder / input.geometry.points->file).lexically_normal().string();
   if (input.short_run) fix(input.short_run->expect);
   return input;
 }

@@ -123,7 +123,7 @@ CompareSettings compare_settings(const Case& input, double exclude_within) {
   for (const CrackInput& crack : input.cracks) settings.defects.cracks.push_back(crack.segment);
   for (const InclusionInput& inclusion : input.inclusions)
     settings.defects.inclusions.push_back(inclusion.shape);
-  settings.spacing = input.geometry.lattice.spacing;
+  settings.spacing = input.geometry.spacing;
   settings.horizon = input.geometry.horizon;
   settings.exclude_within = exclude_within;
   return settings;

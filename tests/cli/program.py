@@ -82,6 +82,17 @@ on = "right"
 """
 
 
+BOX = 'box = { size = ["0.2 m", "0.2 m"], thickness = "10 mm", points = [20, 20] }'
+POINTS = 'points = { file = "sheet.csv", thickness = "10 mm", box = { size = ["0.2 m", "0.2 m"] } }'
+
+
+def lattice_csv(side, spacing, thickness=10):
+    """Points of a square lattice around the origin as CSV text; lengths in mm."""
+    middle, volume = (side - 1) / 2, spacing**2 * thickness
+    return "x [mm],y [mm],volume [mm^3]\n" + "".join(
+        f"{spacing * (i - middle)},{spacing * (j - middle)},{volume}\n" for j in range(side) for i in range(side))
+
+
 def plain_force(stretch):
     return 2e6 * (stretch - stretch**-5) * 0.2 * 0.01
 

@@ -3,7 +3,7 @@
 import re
 import unittest
 
-from program import HOLE, MOVING, PLAIN, ProgramTest, replaced
+from program import BOX, HOLE, MOVING, PLAIN, POINTS, ProgramTest, lattice_csv, replaced
 
 EXPECT = """
 [[expect]]
@@ -29,6 +29,7 @@ TABLE = replaced(replaced(MOVING, "[geometry]", '[table.pull]\nfile = "pull.csv"
                  '"1e4 /s^2 * x * t*t"', '"pull(t) * x / 0.1 m"')
 STATIC_TABLE = replaced(replaced(PLAIN, "[geometry]", '[table.pull]\nfile = "steps.csv"\n\n[geometry]'),
                         '"(stretch - 1)*x"', '"pull(stretch) * x"')
+CLOUD = replaced(PLAIN, BOX, POINTS)
 
 # case, what is replaced, by what, the key's line as a fragment (the message must name its line), part of the message
 MISTAKES = [
@@ -126,6 +127,17 @@ MISTAKES = [
     ("a set beyond a table", TABLE + SET.format(name="far", where="y > pull(x * 1 s/m) + 1 mm"), "1 s/m", "2 s/m", "where",
      "the table pull has no value"),
     ("a constant beyond a table", TABLE, 'until = "4 ms"', 'until = "1 s * pull(5 ms) / 1 mm"', "until", "no value at 0.005 s"),
+    ("no file of points", CLOUD, "sheet.csv", "shet.csv", "points =", "shet.csv: there is no such file"),
+    ("points outside of the box", CLOUD, 'size = ["0.2 m", "0.2 m"]', 'size = ["0.1 m", "0.2 m"]', "points =",
+     "sheet.csv:2: the point at (-0.095, -0.095) m lies outside of the box"),
+    ("points on a loaded edge", CLOUD, 'size = ["0.2 m", "0.2 m"]', 'size = ["0.19 m", "0.2 m"]', "[geometry]",
+     'sheet.csv:2: the point lies on the edge "left"'),
+    ("edges of points without a box", CLOUD, ', box = { size = ["0.2 m", "0.2 m"] }', "", "on = [",
+     'points have no edge "left" as long as nobody says where the body ends; expected box = '),
+    ("points without a thickness", CLOUD, ', thickness = "10 mm"', "", "points =", "thickness: missing"),
+    ("points and a box", CLOUD, POINTS, POINTS + "\n" + BOX, "points = {", "given together with"),
+    ("bonds of points on a lattice", CLOUD, POINTS, POINTS + '\nbonds = "lattice"', "bonds =", 'expected "listed"'),
+    ("unknown bonds", PLAIN, BOX, BOX + '\nbonds = "list"', "bonds =", 'did you mean "listed"?'),
     ("broken reference", PLAIN + FIELD, "points.csv", "broken.csv", "[[expect]]", "broken.csv:2"),
 ]
 
@@ -134,6 +146,7 @@ class WrongInput(ProgramTest):
     def setUp(self):
         super().setUp()
         header = "lambda,X_m,Y_m,ux_m,uy_m\n"
+        self.write("sheet.csv", lattice_csv(20, 10))
         self.write("points.csv", header + "1.4,0.01,0,0.004,0\n")
         self.write("between.csv", header + "1.2,0.01,0,0.002,0\n1.3,0.01,0,0.003,0\n")
         self.write("beyond.csv", header + "3,0.01,0,0.02,0\n")

@@ -28,12 +28,12 @@ std::string error_of(const std::string& text, const std::vector<std::string>& ov
 TEST(CaseReader, ReadsWhatIsWritten) {
   const Case c = parse_case(static_case, "case.toml");
   EXPECT_EQ(c.title, "Membrane with a hole");
-  EXPECT_EQ(c.geometry.lattice.dimension, 2);
-  EXPECT_EQ(c.geometry.lattice.spacing, 0.005);
-  EXPECT_EQ(c.geometry.lattice.thickness, 0.01);
+  EXPECT_EQ(c.geometry.dimension, 2);
+  EXPECT_EQ(c.geometry.spacing, 0.005);
+  EXPECT_EQ(c.geometry.thickness, 0.01);
   EXPECT_DOUBLE_EQ(c.geometry.horizon, 0.015);
   EXPECT_EQ(c.geometry.horizon_at.line, 5);
-  EXPECT_EQ(std::get<Box>(c.geometry.lattice.shape).half_size, (Point{0.25, 0.25, INFINITY}));
+  EXPECT_EQ(std::get<Box>(c.geometry.shape).half_size, (Point{0.25, 0.25, INFINITY}));
   ASSERT_EQ(c.holes.size(), 1U);
   EXPECT_EQ(std::get<Disc>(c.holes[0].shape).radius, 0.08);
   EXPECT_EQ((*c.sets.at(0).where)({{0.09, 0, 0}, 0, 1}), 1);
@@ -54,8 +54,8 @@ TEST(CaseReader, ReadsWhatIsWritten) {
 
 TEST(CaseReader, ReadsARunInTime) {
   const Case c = parse_case(moving_case, "case.toml");
-  EXPECT_EQ(c.geometry.lattice.spacing, 0.002);
-  EXPECT_EQ(std::get<Box>(c.geometry.lattice.shape).center, (Point{0.05, 0, 0}));
+  EXPECT_EQ(c.geometry.spacing, 0.002);
+  EXPECT_EQ(std::get<Box>(c.geometry.shape).center, (Point{0.05, 0, 0}));
   EXPECT_NEAR(std::get<Box>(c.holes.at(1).shape).center[0], 0.071, 1e-15);
   EXPECT_NEAR(std::get<Box>(c.holes.at(1).shape).center[1], 0.002, 1e-15);
   EXPECT_EQ(c.cracks.at(0).segment.b, (Point{0.01, 0, 0}));
@@ -93,7 +93,7 @@ stretch = [0.9, 0.8]
   EXPECT_EQ(c.solver.max_iterations, solver.max_iterations);
   EXPECT_EQ(c.solver.safety, solver.safety);
   EXPECT_EQ(c.output.fields, OutputInput{}.fields);
-  EXPECT_TRUE(std::holds_alternative<Disc>(c.geometry.lattice.shape));
+  EXPECT_TRUE(std::holds_alternative<Disc>(c.geometry.shape));
   EXPECT_FALSE(c.short_run);
 }
 
@@ -114,13 +114,13 @@ ball = { radius = "0.1 m" }
   const std::string box =
       "title = 't'\n[geometry]\nbox = { size = ['1 m', '1 m', '2 m'], points = [10, 10, 20] }\n";
   const Case c = parse_case(box + rest, "case.toml");
-  EXPECT_EQ(c.geometry.lattice.dimension, 3);
+  EXPECT_EQ(c.geometry.dimension, 3);
   EXPECT_EQ(c.loads.at(0).displacement.size(), 3U);
   EXPECT_TRUE(std::holds_alternative<Ball>(*c.sets.at(0).shape));
   const std::string bar =
       "title = 't'\n[geometry]\nbox = { size = ['1 m'], area = '4 mm^2', points = [10] }\n";
-  EXPECT_DOUBLE_EQ(
-      parse_case(bar + rest.substr(0, rest.find("[[load]]")), "case.toml").geometry.lattice.thickness, 4e-6);
+  EXPECT_DOUBLE_EQ(parse_case(bar + rest.substr(0, rest.find("[[load]]")), "case.toml").geometry.thickness,
+                   4e-6);
   EXPECT_NE(error_of(bar + rest.substr(0, rest.find("[set.ball]"))).find("\"front\" is neither an edge"),
             std::string::npos);
 }
@@ -151,7 +151,8 @@ INSTANTIATE_TEST_SUITE_P(
     Names, WrongInput,
     testing::Values(
         Wrong{"horizon =", "horizn =", "5:1",
-              "geometry.horizn: unknown key; valid here are box, disc, horizon; did you mean \"horizon\"?"},
+              "geometry.horizn: unknown key; valid here are box, disc, points, horizon, bonds; did you mean "
+              "\"horizon\"?"},
         Wrong{"stabilisation =", "stabilization =", "15", "did you mean \"stabilisation\"?"},
         Wrong{"stabilisation =", "until =", "15:1", "\"until\" belongs in [solver]"},
         Wrong{"tolerance = 1e-5", "youngs_modulus = \"1 MPa\"", "28:1", "belongs in [material.NAME]"},

@@ -263,9 +263,9 @@ TEST_P(RoundTrip, TheResolvedCaseReadsBackToTheSameValues) {
   const Case second = parse_case(resolved, "resolved.toml");
   // What is written from the same values is the same text, so equal texts mean equal values.
   EXPECT_EQ(resolved_case(second), resolved);
-  EXPECT_EQ(second.geometry.lattice.spacing, first.geometry.lattice.spacing);
+  EXPECT_EQ(second.geometry.spacing, first.geometry.spacing);
   EXPECT_EQ(second.geometry.horizon, first.geometry.horizon);
-  EXPECT_EQ(second.geometry.lattice.thickness, first.geometry.lattice.thickness);
+  EXPECT_EQ(second.geometry.thickness, first.geometry.thickness);
   EXPECT_EQ(second.materials[0].density, first.materials[0].density);
   EXPECT_EQ(second.materials[0].youngs_modulus, first.materials[0].youngs_modulus);
   EXPECT_EQ(second.materials[0].c10, first.materials[0].c10);

@@ -1,0 +1,113 @@
+#include "input/point_list.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numeric>
+#include <string_view>
+
+#include "base/csv.hpp"
+#include "geometry/cubes.hpp"
+#include "input/column_unit.hpp"
+
+namespace riven {
+namespace {
+
+constexpr double kSamePlace = 1e-6;  // of the spacing
+
+std::string place_text(const PointList& points, std::size_t n) {
+  const Point& x = points.position[n];
+  return points.dimension == 3 ? fmt::format("({:.6g}, {:.6g}, {:.6g}) m", x[0], x[1], x[2])
+                               : fmt::format("({:.6g}, {:.6g}) m", x[0], x[1]);
+}
+
+/// A column in SI.
+std::vector<double> read_column(const CsvTable& csv, std::size_t column, const Dimension& dimension) {
+  const std::string& name = csv.columns()[column];
+  const Location header{csv.file(), csv.header_line()};
+  const auto unit = column_unit(name, header);
+  const std::string usual = usual_unit(dimension).empty() ? si_unit(dimension) : usual_unit(dimension);
+  if (!unit)
+    throw InputError(
+        header, fmt::format("column \"{0}\" has no unit; write it in brackets: \"{0} [{1}]\"", name, usual));
+  if (unit->dimension != dimension)
+    throw InputError(header, fmt::format("column \"{}\" is {}; expected {}, such as [{}]", name,
+                                         named(unit->dimension), named(dimension), usual));
+  std::vector<double> values;
+  for (std::size_t row = 0; row < csv.rows(); ++row) {
+    const double number = csv.number(row, column);
+    if (!std::isfinite(number))
+      throw InputError({csv.file(), csv.line(row)},
+                       fmt::format("column \"{}\": found {}; expected a finite number", name, number));
+    values.push_back(to_si(number, *unit));
+  }
+  return values;
+}
+
+void read_volumes(const CsvTable& csv, double thickness, PointList& points) {
+  const Location header{csv.file(), csv.header_line()};
+  const auto volume = csv.find("volume"), area = csv.find("area");
+  if (volume && area) throw InputError(header, "found the columns volume and area; expected one of them");
+  if (area && points.dimension == 3)
+    throw InputError(header, "the column area belongs to two dimensions; expected volume beside x, y, z");
+  if (!volume && !area)
+    throw InputError(header,
+                     fmt::format("expected a column of what belongs to each point, \"volume [mm^3]\"{}",
+                                 points.dimension == 2 ? " or \"area [mm^2]\"" : ""));
+  const std::size_t column = volume.value_or(area.value_or(0));
+  points.volume = read_column(csv, column, {.metre = volume ? 3 : 2});
+  for (std::size_t n = 0; n < points.volume.size(); ++n) {
+    if (!(points.volume[n] > 0))
+      throw InputError(points.at(n), fmt::format("column \"{}\": found {:g}; expected a value above 0",
+                                                 csv.columns()[column], csv.number(n, column)));
+    if (area) points.volume[n] *= thickness;
+  }
+}
+
+}  // namespace
+
+double PointList::spacing(double thickness) const {
+  const double sum = std::accumulate(volume.begin(), volume.end(), 0.0);
+  return std::pow(sum / static_cast<double>(volume.size()) / thickness, 1.0 / dimension);
+}
+
+PointList read_points(const std::filesystem::path& file, double thickness) {
+  const CsvTable csv = CsvTable::read(file);
+  PointList points;
+  points.file = csv.file();
+  points.dimension = csv.find("z") ? 3 : 2;
+  const auto fewest = static_cast<std::size_t>(points.dimension) + 1;
+  if (csv.rows() < fewest)
+    throw InputError(Location{csv.file()},
+                     fmt::format("found {} points; expected {} at least", csv.rows(), fewest));
+  for (std::size_t n = 0; n < csv.rows(); ++n) points.line.push_back(csv.line(n));
+  points.position.resize(csv.rows());
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(points.dimension); ++axis) {
+    const std::string_view name = std::string_view("xyz").substr(axis, 1);
+    const std::vector<double> values = read_column(csv, csv.column(name), dimension::length);
+    for (std::size_t n = 0; n < values.size(); ++n) points.position[n][axis] = values[n];
+  }
+  read_volumes(csv, thickness, points);
+  return points;
+}
+
+void check_inside(const PointList& points, const Box& box, double spacing) {
+  for (std::size_t n = 0; n < points.position.size(); ++n)
+    if (signed_distance(box, points.position[n]) > kSamePlace * spacing)
+      throw InputError(points.at(n),
+                       fmt::format("the point at {} lies outside of the box; expected all points in it",
+                                   place_text(points, n)));
+}
+
+void check_apart(const PointList& points, double spacing) {
+  const Cubes cubes(points.position, points.dimension, spacing);
+  for (std::size_t n = 0; n < points.position.size(); ++n) {
+    const std::size_t first = cubes.within(points.position[n], kSamePlace * spacing).front();
+    if (first != n)
+      throw InputError(points.at(n),
+                       fmt::format("the point at {} stands in line {} already; expected each place once",
+                                   place_text(points, n), points.line[first]));
+  }
+}
+
+}  // namespace riven

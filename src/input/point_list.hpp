@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "base/error.hpp"
+#include "geometry/shape.hpp"
+
+namespace riven {
+
+/// Material points that a CSV file lists.
+struct PointList {
+  std::string file;
+  int dimension = 2;
+  std::vector<Point> position;  // m
+  std::vector<double> volume;   // m^3, one per position
+  std::vector<int> line;        // of the file, one per position
+
+  /// Mean spacing (m): the edge of a square or cube that holds the mean volume.
+  [[nodiscard]] double spacing(double thickness) const;
+  [[nodiscard]] Location at(std::size_t point) const { return {file, line[point]}; }
+};
+
+/// Reads the columns x, y, in three dimensions z, and volume, or in two dimensions area instead, which is
+/// multiplied by the thickness (m). Their names end in their units, as in "x [mm]"; other columns are
+/// ignored. Throws InputError (file, line) where a column, a unit or a number is wrong.
+PointList read_points(const std::filesystem::path& file, double thickness);
+
+/// Throws InputError (file, line) for a point outside of the box, and for two points at one place.
+void check_inside(const PointList& points, const Box& box, double spacing);
+void check_apart(const PointList& points, double spacing);
+
+}  // namespace riven
