@@ -36,7 +36,7 @@ def arguments():
     parser.add_argument("--keep", action="store_true", help="take results that are there already")
     options = parser.parse_args()
     options.points = [int(n) for n in options.points.split(",")] if options.points else None
-    options.cases = options.cases or sorted(path.stem for path in CASES.glob("*.toml"))
+    options.cases = options.cases or sorted(path.stem for path in CASES.glob("*.toml") if "published" not in path.stem)
     return options
 
 

@@ -262,6 +262,14 @@ std::vector<ModelField> Membrane::fields(std::span<const double> u) {
   return {std::move(damage), std::move(energy), std::move(stress), std::move(weight)};
 }
 
+/// Half of the deformation gradient of a point's family.
+Eigen::Matrix2d Membrane::gradient(std::size_t point) const {
+  Eigen::Matrix2d half_f;
+  half_f << mean_gradient_[0][point], mean_gradient_[1][point], mean_gradient_[2][point],
+      mean_gradient_[3][point];
+  return half_f;
+}
+
 /// The family of a point that goes by its deformation gradient, or null.
 const Membrane::ListedFamily* Membrane::gradient_family(std::size_t point) const {
   if (listed_index_[point] < 0) return nullptr;
@@ -275,14 +283,13 @@ const Membrane::ListedFamily* Membrane::gradient_family(std::size_t point) const
 std::array<double, 3> Membrane::family_curvature(std::size_t point) const {
   const double a = mean_s2_[point], b = mean_s4_[point];
   if (gradient_family(point)) {  // the energy is a function of F, and the one sum is F itself
-    Eigen::Matrix2d half_f;
-    half_f << mean_gradient_[0][point], mean_gradient_[1][point], mean_gradient_[2][point],
-        mean_gradient_[3][point];
-    return {material_.plane_stress(2 * half_f).tangent.norm(), 0, 0};
+    return {material_.plane_stress(2 * gradient(point)).tangent.norm(), 0, 0};
   }
   const FamilyEnergy e = std::visit([&](const auto& law) { return family_energy(law, a, b); }, material_.law);
-  return {std::abs(e.waa + 4 * a * e.wab + 4 * a * a * e.wbb), std::abs(e.wab + 2 * a * e.wbb),
-          std::abs(e.wbb)};
+  const FamilyEnergy k = stiffened_modulus(kappa_[point], a, b);
+  const double z2 = a - 2 * gradient(point).squaredNorm();
+  const double waa = e.waa + z2 * k.waa, wab = e.wab + z2 * k.wab, wbb = e.wbb + z2 * k.wbb;
+  return {std::abs(waa + 4 * a * wab + 4 * a * a * wbb), std::abs(wab + 2 * a * wbb), std::abs(wbb)};
 }
 
 namespace {
@@ -307,13 +314,18 @@ void Membrane::stiffness_bound(std::span<const double> u, std::span<double> boun
   std::fill(bound.begin(), bound.end(), 0.0);
   struct BondBound {
     const MembraneBond bond;
-    double block, first, second;  // N/m; lengths of the gradients of the family sums (1/m)
+    double block;                   // N/m
+    double first, second;           // lengths of the gradients of the family sums (1/m)
+    double modulus, inhomogeneity;  // of the stabilisation's two factors (Pa/m, 1/m)
   };
   std::vector<BondBound> family;
   for (const std::size_t i : body().points) {
     const PointForce law = point_force(i);
     const ListedFamily* by_gradient = gradient_family(i);
-    FamilySum first, second;
+    const FamilyEnergy kappa =
+        by_gradient ? FamilyEnergy{} : stiffened_modulus(kappa_[i], mean_s2_[i], mean_s4_[i]);
+    const Eigen::Matrix2d f = 2 * gradient(i);
+    FamilySum first, second, modulus, inhomogeneity;
     family.clear();
     for_each_bond(i, [&](const MembraneBond& bond) {
       const Eigen::Vector2d y = deformed(i, bond, u);
@@ -325,15 +337,25 @@ void Membrane::stiffness_bound(std::span<const double> u, std::span<double> boun
       if (by_gradient) ga = bond.weight * inverse2 * (by_gradient->inverse_shape * bond.reference);
       first.add(ga);
       second.add(gb);
-      family.push_back({bond, block, ga.norm(), gb.norm()});
+      const Eigen::Vector2d gk = (kappa.wa + 2 * s2 * kappa.wb) * ga;
+      const Eigen::Vector2d gz = 2 * bond.weight * inverse2 * (y - f * bond.reference);
+      modulus.add(gk);
+      inhomogeneity.add(gz);
+      family.push_back({bond, block, ga.norm(), gb.norm(), gk.norm(), gz.norm()});
     });
     const auto [waa, wab, wbb] = family_curvature(i);
     const double per_first = body().volume[i] * (waa * first.row() + wab * second.row());
     const double per_second = body().volume[i] * (wab * first.row() + wbb * second.row());
-    double own = per_first * first.sum.norm() + per_second * second.sum.norm();
+    const double per_modulus = body().volume[i] * inhomogeneity.row();
+    const double per_inhomogeneity = body().volume[i] * modulus.row();
+    double own = per_first * first.sum.norm() + per_second * second.sum.norm() +
+                 per_modulus * modulus.sum.norm() + per_inhomogeneity * inhomogeneity.sum.norm();
     for (const BondBound& b : family) {
       own += 2 * b.block;
-      add_row(b.bond.end, 2 * b.block + per_first * b.first + per_second * b.second, bound);
+      add_row(b.bond.end,
+              2 * b.block + per_first * b.first + per_second * b.second + per_modulus * b.modulus +
+                  per_inhomogeneity * b.inhomogeneity,
+              bound);
     }
     add_row(static_cast<End>(i), own, bound);
   }

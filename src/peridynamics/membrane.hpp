@@ -109,6 +109,7 @@ class Membrane final : public PointModel {
   void pull_listed(const ListedFamily& family, std::span<const double> u, std::span<double> force);
   void push_far_ends(std::span<double> force) const;
   [[nodiscard]] std::optional<Breakdown> first_collapsed() const;
+  [[nodiscard]] Eigen::Matrix2d gradient(std::size_t point) const;
   [[nodiscard]] const ListedFamily* gradient_family(std::size_t point) const;
   [[nodiscard]] std::array<double, 3> family_curvature(std::size_t point) const;
 

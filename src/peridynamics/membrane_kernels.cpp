@@ -107,15 +107,17 @@ void Membrane::respond_row(const Law& law, const Lattice& lattice, std::size_t r
       continue;
     }
     const FamilyEnergy e = family_energy(law, a, b);
-    const double v = body().volume[i], kappa = kappa_[i];
+    const double v = body().volume[i];
+    const FamilyEnergy k = stiffened_modulus(kappa_[i], a, b);
     double gradient2 = 0;
     for (std::size_t c = 0; c < 4; ++c) {
       gradient2 += mean_gradient_[c][i] * mean_gradient_[c][i];
-      force_n_[c][i] = -4 * v * kappa * mean_gradient_[c][i];
+      force_n_[c][i] = -4 * v * k.w * mean_gradient_[c][i];
     }
-    energy_density_[i] = e.w + kappa * (a - 2 * gradient2);
-    force_a_[i] = 2 * v * (e.wa + kappa);
-    force_b_[i] = 4 * v * e.wb;
+    const double z2 = a - 2 * gradient2;  // mean of |Y - F xi|^2 / |xi|^2
+    energy_density_[i] = e.w + k.w * z2;
+    force_a_[i] = 2 * v * (e.wa + k.w + k.wa * z2);
+    force_b_[i] = 4 * v * (e.wb + k.wb * z2);
   }
 }
 
@@ -158,17 +160,19 @@ void Membrane::respond_listed(const ListedFamily& family, std::span<const double
   for (std::size_t c = 0; c < 4; ++c)  // half of F, as for the points of the formula
     mean_gradient_[c][i] = 0.5 * f(static_cast<Eigen::Index>(c / 2), static_cast<Eigen::Index>(c % 2));
   const double v = body().volume[i], kappa = kappa_[i];
-  const double stabilisation = kappa * (a - f.cwiseProduct(m).sum());
+  const double z2 = a - f.cwiseProduct(m).sum();  // mean of |Y - F xi|^2 / |xi|^2
   if (family.by_gradient) {
     mean_s4_[i] =
         0.5 * (3 * a * a - f.determinant() * f.determinant());  // so that (7) tells a collapse here too
     const PlaneResponse response = material_.plane_stress(f);
-    set_point(i, response.energy + stabilisation,
+    set_point(i, response.energy + kappa * z2,
               {2 * v * kappa, 0, v * (response.stress * family.inverse_shape - 2 * kappa * f)});
   } else {
     const FamilyEnergy e =
         std::visit([&](const auto& law) { return family_energy(law, a, b); }, material_.law);
-    set_point(i, e.w + stabilisation, {2 * v * (e.wa + kappa), 4 * v * e.wb, -2 * v * kappa * f});
+    const FamilyEnergy k = stiffened_modulus(kappa, a, b);
+    set_point(i, e.w + k.w * z2,
+              {2 * v * (e.wa + k.w + k.wa * z2), 4 * v * (e.wb + k.wb * z2), -2 * v * k.w * f});
   }
 }
 
