@@ -8,7 +8,9 @@
 
 namespace riven {
 
-/// The unit in the brackets that end the name of a CSV column: "x [mm]"; nothing without brackets. Throws
+/// The unit in the brackets that end the name of a CSV column: "x [mm]", "[1/s]", and plain numbers under
+/// "[-]" or
+/// "[1]"; nothing without brackets. Throws
 /// InputError at `header` for a unit that Riven does not know.
 std::optional<Unit> column_unit(const std::string& column, const Location& header);
 

@@ -10,6 +10,7 @@
 #include "base/csv.hpp"
 #include "base/error.hpp"
 #include "base/nearest_name.hpp"
+#include "input/column_unit.hpp"
 
 namespace riven {
 namespace {
@@ -28,28 +29,9 @@ std::size_t unit_begin(const std::string& column) {
   return last == std::string::npos || bracket == 0 ? 0 : last + 1;
 }
 
-// The unit in a column's brackets: "[ms]", "[N/m]", "[1/s]"; none, "[-]" and "[1]" are numbers.
-Unit unit_of(const std::string& column, const Location& header) {
-  const std::size_t begin = unit_begin(column);
-  if (begin == column.size()) return {};
-  const std::size_t bracket = column.find('[', begin);
-  const std::string unit = column.substr(bracket + 1, column.size() - bracket - 2);
-  if (unit.empty() || unit == "-" || unit == "1") return {};
-  const std::string text = unit.starts_with("1/") ? unit.substr(1) : unit;
-  try {
-    const auto match = match_unit(text, 0);
-    if (match && match->length == text.size()) return match->unit;
-  } catch (const std::invalid_argument& wrong) {
-    throw InputError(header, fmt::format("column \"{}\": {}", column, wrong.what()));
-  }
-  throw InputError(header, fmt::format("column \"{}\": unknown unit \"{}\"; units are {}, and compounds such "
-                                       "as kg/m^3{}",
-                                       column, unit, listed(unit_names()), did_you_mean(unit, unit_names())));
-}
-
 TableFunction::Column read_column(const CsvTable& csv, std::size_t index) {
   TableFunction::Column column{csv.columns()[index], {}, {}};
-  const Unit unit = unit_of(column.name, {csv.file(), csv.header_line()});
+  const Unit unit = column_unit(column.name, {csv.file(), csv.header_line()}).value_or(Unit{});
   column.dimension = unit.dimension;
   for (std::size_t row = 0; row < csv.rows(); ++row) {
     const double number = csv.number(row, index);

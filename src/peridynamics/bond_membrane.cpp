@@ -45,7 +45,6 @@ BondMembrane::BondMembrane(Body body, Material material, const BondMembraneSetti
   share_.assign(b.size(), 0.0);
   for (const std::size_t i : b.points) {
     share_[i] = 1;
-    directed_bonds_ += b.family_size(i);
   }
   for (const GhostPoint& ghost : b.ghosts) {
     volume_[ghost.point] = b.volume[ghost.master];
@@ -201,20 +200,18 @@ Eigen::Matrix2d BondMembrane::nominal_stress(std::size_t point, std::span<const 
 
 std::vector<ModelField> BondMembrane::fields(std::span<const double> u) {
   place_inclusions(u);
-  ModelField damage{"damage", 1, {}}, energy{"strain_energy_density", 1, {}}, stress{"nominal_stress", 9, {}},
+  ModelField energy{"strain_energy_density", 1, {}}, stress{"nominal_stress", 9, {}},
       factor{"surface_correction", 3, {}};
   for (const std::size_t i : body().points) {
-    const double whole = body().whole_family[i];
-    damage.values.push_back(whole > 0 ? 1 - static_cast<double>(body().family_size(i)) / whole : 0);
     energy.values.push_back(energy_density(i, u));
     const Eigen::Matrix2d p = nominal_stress(i, u);
     stress.values.insert(stress.values.end(), {p(0, 0), p(0, 1), 0, p(1, 0), p(1, 1), 0, 0, 0, 0});
     factor.values.insert(factor.values.end(), {correction_[0][i], correction_[1][i], 0});
   }
   const std::size_t shown = positions().size();
-  for (ModelField* field : {&damage, &energy, &stress, &factor})  // rigid points have none of these
+  for (ModelField* field : {&energy, &stress, &factor})  // rigid points have none of these
     field->values.resize(shown * static_cast<std::size_t>(field->components), 0.0);
-  return {std::move(damage), std::move(energy), std::move(stress), std::move(factor)};
+  return {damage(), std::move(energy), std::move(stress), std::move(factor)};
 }
 
 std::vector<std::string> BondMembrane::describe() const {

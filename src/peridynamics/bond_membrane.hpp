@@ -36,7 +36,6 @@ class BondMembrane final : public PointModel {
   [[nodiscard]] std::optional<Breakdown> inspect(std::span<const double> u) override;
   [[nodiscard]] std::vector<ModelField> fields(std::span<const double> u) override;
   [[nodiscard]] std::vector<std::string> describe() const override;
-  [[nodiscard]] std::size_t bonds() const override { return directed_bonds_; }
   [[nodiscard]] std::size_t bytes() const override;
 
   [[nodiscard]] const BondLaw& law() const { return law_; }
@@ -74,8 +73,7 @@ class BondMembrane final : public PointModel {
   Material material_;
   BondMembraneSettings settings_;
   BondLaw law_;
-  double c0_ = 0;  // N/m^5
-  std::size_t directed_bonds_ = 0;
+  double c0_ = 0;               // N/m^5
   std::vector<double> volume_;  // m^3, of ghosts that of the point they mirror
   std::vector<double> share_;   // of a bond's force that the point's entry gets: 1, ghosts 1/2
   std::array<std::vector<double>, 2> correction_;

@@ -98,7 +98,6 @@ void Membrane::make_families() {
   FamilyWeights whole;  // most points of a lattice have the whole stencil: solve for it once
   for (const std::size_t i : body().points) {
     kappa_[i] = stabilisation_modulus(i);
-    directed_bonds_ += body().family_size(i);
     const bool at_interface = !body().interface_of(i).empty();
     const bool is_whole = body().complete[i] && !at_interface && body().on_lattice() != nullptr;
     FamilyWeights weights =
@@ -246,20 +245,18 @@ Eigen::Matrix2d Membrane::nominal_stress(std::size_t point, std::span<const doub
 
 std::vector<ModelField> Membrane::fields(std::span<const double> u) {
   update_points(u);
-  ModelField damage{"damage", 1, {}}, energy{"strain_energy_density", 1, {}}, stress{"nominal_stress", 9, {}},
+  ModelField energy{"strain_energy_density", 1, {}}, stress{"nominal_stress", 9, {}},
       weight{"weight_minimum", 1, {}};
   for (const std::size_t i : body().points) {
-    const double whole = body().whole_family[i];  // 0 for a point that holes have cut off from all others
-    damage.values.push_back(whole > 0 ? 1 - static_cast<double>(body().family_size(i)) / whole : 0);
     energy.values.push_back(energy_density_[i]);
     weight.values.push_back(smallest_weight_[i]);
     const Eigen::Matrix2d p = nominal_stress(i, u);
     stress.values.insert(stress.values.end(), {p(0, 0), p(0, 1), 0, p(1, 0), p(1, 1), 0, 0, 0, 0});
   }
   const std::size_t shown = positions().size();
-  for (ModelField* field : {&damage, &energy, &stress, &weight})  // rigid points have none of these
+  for (ModelField* field : {&energy, &stress, &weight})  // rigid points have none of these
     field->values.resize(shown * static_cast<std::size_t>(field->components), 0.0);
-  return {std::move(damage), std::move(energy), std::move(stress), std::move(weight)};
+  return {damage(), std::move(energy), std::move(stress), std::move(weight)};
 }
 
 /// Half of the deformation gradient of a point's family.

@@ -43,7 +43,6 @@ class Membrane final : public PointModel {
   [[nodiscard]] std::optional<Breakdown> inspect(std::span<const double> u) override;
   [[nodiscard]] std::vector<ModelField> fields(std::span<const double> u) override;
   [[nodiscard]] std::vector<std::string> describe() const override;
-  [[nodiscard]] std::size_t bonds() const override { return directed_bonds_; }
   [[nodiscard]] std::size_t bytes() const override;
 
   [[nodiscard]] const Material& material() const { return material_; }
@@ -115,7 +114,6 @@ class Membrane final : public PointModel {
 
   Material material_;
   double stabilisation_ = 0;
-  std::size_t directed_bonds_ = 0;
   std::vector<ListedFamily> listed_;  // in order of their points
   ListedFamilyBonds listed_bonds_;
   std::vector<std::ptrdiff_t> listed_index_;  // per stored point, -1 for formula points

@@ -24,6 +24,7 @@ class PointModel : public Model {
   [[nodiscard]] std::vector<Point> positions() const override;
   [[nodiscard]] std::vector<Point> displacements(std::span<const double> u) const override;
   [[nodiscard]] std::size_t points() const override { return body_.points.size(); }
+  [[nodiscard]] std::size_t bonds() const override { return directed_bonds_; }
 
   [[nodiscard]] const Body& body() const { return body_; }
   /// First of the three entries of an inclusion in a state.
@@ -42,6 +43,9 @@ class PointModel : public Model {
     return static_cast<End>(body_.size() + interface_bond);
   }
   [[nodiscard]] bool is_surface(End end) const { return end >= body_.size(); }
+
+  /// Share of a point's bonds that cracks have cut, the field "damage"; 0 for rigid points.
+  [[nodiscard]] ModelField damage() const;
 
   /// Places the surface points of all inclusions where a state has them; `displacement` then uses them.
   void place_inclusions(std::span<const double> u);
@@ -67,6 +71,7 @@ class PointModel : public Model {
 
   Body body_;
   double density_ = 0;
+  std::size_t directed_bonds_ = 0;
   std::vector<Inclusion> inclusions_;
   std::vector<Eigen::Vector2d> surface_;  // displacements of the surface points (m)
 };

@@ -300,6 +300,11 @@ std::vector<std::string> warnings(const Simulation& simulation) {
     list.emplace_back(
         "with a stabilisation below 1 rows of points fold over one another beside defects and under "
         "compression");
+  if (!simulation.model->conservative())
+    list.push_back(
+        fmt::format("the model \"{}\" has no energy and holds for the loading \"{}\" only: it is kept for "
+                    "comparison; kind = \"membrane\" is the one to use",
+                    simulation.input.model.kind, simulation.input.model.loading));
   if (simulation.input.loads.empty()) list.emplace_back("there is no load: nothing will move");
   if (simulation.input.probes.empty())
     list.emplace_back("there is no probe: history.csv and the metrics will be empty");

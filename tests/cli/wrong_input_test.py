@@ -20,6 +20,7 @@ file = "points.csv"
 tolerance = "1 %"
 kind = "reference"
 """
+BOND = PLAIN + '\n[model]\nkind = "membrane-bond"\nloading = "planar"\nvariant = "published"\n'
 SET = """
 [set.{name}]
 where = "{where}"
@@ -57,6 +58,17 @@ MISTAKES = [
     ("unknown edge", PLAIN, '["left",', '["lefft",', "on = [", 'did you mean "left"?'),
     ("unknown probe", PLAIN, '"reaction"', '"force"', 'kind = "force"', "expected one of reaction"),
     ("horizon below the spacing", PLAIN, '"3 dx"', '"0.5 dx"', "horizon", "below the spacing"),
+    ("a loading misspelt", BOND, '"planar"', '"plannar"', "loading =", 'did you mean "planar"?'),
+    ("no loading", BOND, 'loading = "planar"', "", "[model]", "model.loading: missing"),
+    ("unknown variant", BOND, '"published"', '"printed"', "variant =", "expected one of published, zero-residual"),
+    ("a loading of the other model", BOND, '"membrane-bond"', '"membrane"', "loading =",
+     'does not apply here; it belongs to kind = "membrane-bond"'),
+    ("stabilised bonds", BOND, 'variant = "published"', 'variant = "published"\nstabilisation = 4', "stabilisation =",
+     'it belongs to kind = "membrane"'),
+    ("bonds of another law", BOND, 'law = "neo-hookean"\nyoungs_modulus = "6 MPa"', 'law = "yeoh"\nc10 = "1 MPa"', "[model]",
+     'expected law = "neo-hookean"'),
+    ("a field of the other model", BOND + '\n[output]\nfields = ["damage"]\n', '["damage"]', '["weight_minimum"]', "[output]",
+     'the model "membrane-bond" has no field "weight_minimum"'),
     ("no density in motion", MOVING, 'density = "1100 kg/m^3"', "", "[material.rubber]", "density"),
     ("empty set", PLAIN + SET.format(name="far", where="x > 1 m"), "x > 1 m", "x > 2 m", "[set.far]", "the set is empty"),
     ("overlap", HOLE + '\n[[hole]]\ndisc = { radius = "5 mm", center = ["9 mm", 0] }\n', "9 mm", "10 mm",
