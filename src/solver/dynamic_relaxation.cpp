@@ -207,7 +207,7 @@ class Relaxation {
     energy.largest = std::max({energy.largest, std::abs(energy.strain), std::abs(energy.external_work),
                                kLeastStrain * model_.spacing() * least_reaction_});
     const double lost = before - (energy.strain - energy.external_work);
-    if (state_.steps > kStepsOfPoorBalance && lost > kJump * energy.largest)
+    if (model_.conservative() && state_.steps > kStepsOfPoorBalance && lost > kJump * energy.largest)
       observer_.remarked(
           fmt::format("in the load step to {:.6g} the body lost {:.2g} % of its energy: it has jumped to "
                       "another equilibrium (snapping, "
