@@ -5,6 +5,7 @@
         for c in hole crack inclusion; do ./riven run neo-hookean-membrane/$l-$c; done
     done
     docs/pictures.py [LOADING ...]              # all three, unless named
+    docs/pictures.py strap                      # the results strap, slit and disc of docs/guide.md
 
 Needs the Debian package python3-matplotlib.
 """
@@ -63,20 +64,34 @@ SHOWN = {
 
 def draw(loading):
     stretch, size, top, point = SHOWN[loading]
+    half = 0.25
+    cases = [(f"{loading}-{name}, stretch {stretch}", RESULTS / f"{loading}-{name}") for name in ["hole", "crack", "inclusion"]]
+    outline = [[-half, half, half, -half, -half], [-half, -half, half, half, -half]]
+    paint(loading, cases, outline, stretch, size, top, point)
+
+
+def draw_strap():
+    cases = [(f"{name}, stretch 2", RESULTS.parent / name) for name in ["strap", "slit", "disc"]]
+    outline = [[-0.08, 0.08, 0.08, -0.08, -0.08], [-0.04, -0.04, 0.04, 0.04, -0.04]]
+    paint("strap", cases, outline, 2, (12, 2.3), 3, 7)
+
+
+def paint(file_name, cases, outline, stretch, size, top, point):
     figure, axes = plt.subplots(1, 3, figsize=size, constrained_layout=True, sharey=True)
-    for axis, name in zip(axes, ["hole", "crack", "inclusion"]):
-        x, u, energy = state(RESULTS / f"{loading}-{name}", stretch)
+    for axis, (title, folder) in zip(axes, cases):
+        x, u, energy = state(folder, stretch)
         y = x + u
         shown = axis.scatter(y[:, 0], y[:, 1], c=energy / 1e6, s=point, cmap="viridis", vmin=0, vmax=top, linewidths=0)
-        axis.plot([-0.25, 0.25, 0.25, -0.25, -0.25], [-0.25, -0.25, 0.25, 0.25, -0.25], color="black", lw=0.9, ls="--", zorder=3)
-        axis.set(aspect="equal", title=f"{loading}-{name}, stretch {stretch}", xlabel="x [m]")
+        axis.plot(*outline, color="black", lw=0.9, ls="--", zorder=3)
+        axis.set(aspect="equal", title=title, xlabel="x [m]")
     axes[0].set_ylabel("y [m]")
     figure.colorbar(shown, ax=axes, label="strain energy\ndensity [MJ/m³]", shrink=0.9, extend="max")
-    file = ROOT / f"docs/pictures/{loading}.png"
+    file = ROOT / f"docs/pictures/{file_name}.png"
     figure.savefig(file, dpi=90)
-    PIL.Image.open(file).convert("RGB").quantize(96).save(file, optimize=True)  # a third of the size
+    picture = PIL.Image.open(file).convert("RGB")
+    picture.quantize(256, method=PIL.Image.Quantize.MAXCOVERAGE).save(file, optimize=True)  # a fifth of the size
 
 
 if __name__ == "__main__":
-    for loading in sys.argv[1:] or SHOWN:
-        draw(loading)
+    for name in sys.argv[1:] or SHOWN:
+        draw_strap() if name == "strap" else draw(name)
