@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
-"""Draws the deformed points of results, coloured by strain energy density: the pictures of README.md.
+"""Draws the deformed points of results, coloured by strain energy density: pictures of README.md and docs/guide.md.
 
-    for c in hole crack inclusion; do ./riven run neo-hookean-membrane/equibiaxial-$c; done
-    docs/pictures.py
+    for l in equibiaxial planar uniaxial; do
+        for c in hole crack inclusion; do ./riven run neo-hookean-membrane/$l-$c; done
+    done
+    docs/pictures.py [LOADING ...]              # all three, unless named
+    docs/pictures.py strap                      # the results strap, slit and disc of docs/guide.md
 
 Needs the Debian package python3-matplotlib.
 """
@@ -10,6 +13,7 @@ Needs the Debian package python3-matplotlib.
 import base64
 import pathlib
 import struct
+import sys
 import xml.etree.ElementTree as xml
 import zlib
 
@@ -18,6 +22,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+import PIL.Image
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = pathlib.Path("results/neo-hookean-membrane")
@@ -49,18 +54,44 @@ def state(folder, stretch):
     return points, array(named["displacement"]), array(named["strain_energy_density"])[:, 0]
 
 
-def main():
-    figure, axes = plt.subplots(1, 3, figsize=(12, 4.4), constrained_layout=True)
-    for axis, name in zip(axes, ["hole", "crack", "inclusion"]):
-        x, u, energy = state(RESULTS / f"equibiaxial-{name}", 3)
+# Loading: stretch that is shown, size of the figure (inches), top of the colour scale (MJ/m^3), size of a point.
+SHOWN = {
+    "equibiaxial": (3, (12, 4.4), 600, 2.6),
+    "planar": (2, (12, 2.8), 120, 4.5),
+    "uniaxial": (2, (12, 2.6), 120, 4.5),
+}
+
+
+def draw(loading):
+    stretch, size, top, point = SHOWN[loading]
+    half = 0.25
+    cases = [(f"{loading}-{name}, stretch {stretch}", RESULTS / f"{loading}-{name}") for name in ["hole", "crack", "inclusion"]]
+    outline = [[-half, half, half, -half, -half], [-half, -half, half, half, -half]]
+    paint(loading, cases, outline, stretch, size, top, point)
+
+
+def draw_strap():
+    cases = [(f"{name}, stretch 2", RESULTS.parent / name) for name in ["strap", "slit", "disc"]]
+    outline = [[-0.08, 0.08, 0.08, -0.08, -0.08], [-0.04, -0.04, 0.04, 0.04, -0.04]]
+    paint("strap", cases, outline, 2, (12, 2.3), 3, 7)
+
+
+def paint(file_name, cases, outline, stretch, size, top, point):
+    figure, axes = plt.subplots(1, 3, figsize=size, constrained_layout=True, sharey=True)
+    for axis, (title, folder) in zip(axes, cases):
+        x, u, energy = state(folder, stretch)
         y = x + u
-        shown = axis.scatter(y[:, 0], y[:, 1], c=energy / 1e6, s=2.6, cmap="viridis", vmin=0, vmax=600, linewidths=0)
-        axis.plot([-0.25, 0.25, 0.25, -0.25, -0.25], [-0.25, -0.25, 0.25, 0.25, -0.25], color="0.45", lw=0.8, ls="--")
-        axis.set(aspect="equal", title=f"equibiaxial-{name}, stretch 3", xlabel="x [m]")
+        shown = axis.scatter(y[:, 0], y[:, 1], c=energy / 1e6, s=point, cmap="viridis", vmin=0, vmax=top, linewidths=0)
+        axis.plot(*outline, color="black", lw=0.9, ls="--", zorder=3)
+        axis.set(aspect="equal", title=title, xlabel="x [m]")
     axes[0].set_ylabel("y [m]")
-    figure.colorbar(shown, ax=axes, label="strain energy density [MJ/m³]", shrink=0.85, extend="max")
-    figure.savefig(ROOT / "docs/pictures/equibiaxial.png", dpi=90, pil_kwargs={"optimize": True})
+    figure.colorbar(shown, ax=axes, label="strain energy\ndensity [MJ/m³]", shrink=0.9, extend="max")
+    file = ROOT / f"docs/pictures/{file_name}.png"
+    figure.savefig(file, dpi=90)
+    picture = PIL.Image.open(file).convert("RGB")
+    picture.quantize(256, method=PIL.Image.Quantize.MAXCOVERAGE).save(file, optimize=True)  # a fifth of the size
 
 
 if __name__ == "__main__":
-    main()
+    for name in sys.argv[1:] or SHOWN:
+        draw_strap() if name == "strap" else draw(name)
