@@ -11,7 +11,7 @@ Point Body::position(std::size_t point) const {
 
 std::span<const InterfaceBond> Body::interface_of(std::size_t point) const {
   const auto [first, last] =
-      std::equal_range(interface.begin(), interface.end(), InterfaceBond{point, 0, 0, {}},
+      std::equal_range(interface.begin(), interface.end(), InterfaceBond{.point = point},
                        [](const InterfaceBond& a, const InterfaceBond& b) { return a.point < b.point; });
   return {first, last};
 }
@@ -30,7 +30,7 @@ double Body::face_area(std::size_t face) const {
 }
 
 std::size_t Body::bytes() const {
-  std::size_t sum = size() * (sizeof(PointKind) + sizeof(double) + sizeof(std::uint16_t)) + size() / 8 +
+  std::size_t sum = size() * (sizeof(PointKind) + sizeof(double) + sizeof(std::uint32_t)) + size() / 8 +
                     points.size() * sizeof(std::size_t) + interface.size() * sizeof(InterfaceBond);
   if (const LatticeBonds* on = on_lattice()) return sum + size() * on->stencil.size() / 8;
   const auto& list = std::get<ListedBonds>(bonds);

@@ -37,7 +37,8 @@ struct InterfaceBond {
   std::size_t point = 0;      // body end
   std::size_t neighbour = 0;  // the point behind the surface
   std::size_t inclusion = 0;
-  Point end{};  // on the surface, undeformed (m)
+  Point end{};        // on the surface, undeformed (m)
+  double volume = 0;  // of the point behind, before it became part of the inclusion (m^3)
 };
 
 /// Points of a uniform lattice: neighbour k of point i is i + shift[k], and a bond is one bit.
@@ -66,7 +67,7 @@ struct Body {
   Defects defects;
   std::vector<PointKind> kind;
   std::vector<double> volume;               // m^3; 0 unless body
-  std::vector<std::uint16_t> whole_family;  // bonds of a body point if no crack had cut any
+  std::vector<std::uint32_t> whole_family;  // bonds of a body point if no crack had cut any
   std::vector<bool> complete;               // nothing is missing in a body point's family
   std::vector<std::size_t> points;          // body points in storage order
   std::vector<GhostPoint> ghosts;

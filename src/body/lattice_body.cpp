@@ -184,7 +184,8 @@ class BondMaker {
     ++body_.whole_family[i];
     if (bond.verdict == BondRules::Verdict::cracked) return false;
     if (bond.verdict == BondRules::Verdict::interface) {
-      body_.interface.push_back({i, j, bond.inclusion, bond.end});
+      const double volume = std::pow(body_.spacing, body_.dimension) * body_.thickness;
+      body_.interface.push_back({i, j, bond.inclusion, bond.end, volume});
     } else {
       planes_.join(stencil_, k, i);
     }

@@ -115,7 +115,7 @@ class ListedBodyMaker {
         if (bond.verdict == cracked) continue;
         family[i] += volume[j];
         if (bond.verdict == interface) {
-          body_.interface.push_back({i, j, bond.inclusion, bond.end});
+          body_.interface.push_back({i, j, bond.inclusion, bond.end, volume[j]});
           continue;
         }
         neighbours[i].push_back(static_cast<std::uint32_t>(j));

@@ -103,7 +103,9 @@ Format describe_points(GeometryInput& geometry, const Case& c) {
               "are ignored. "
               "`dx` is their mean spacing, (mean volume / thickness)^(1/2), or (mean volume)^(1/3). Points "
               "in a hole are "
-              "dropped and points in an inclusion are part of it; all others keep their volumes.",
+              "dropped and points in an inclusion, or closer to it than 0.15 dx, are part of it; all others "
+              "keep their "
+              "volumes.",
           .keys = {Key{"file", kind::Text{&points.file}, "CSV file, relative to the case file."}.required(),
                    Key{"thickness", Quantity{thickness.get(), dimension::length, positive},
                        "Two dimensions only: the body's thickness."},

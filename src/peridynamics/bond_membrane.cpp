@@ -76,7 +76,7 @@ BondMembrane::Bond BondMembrane::bond_to_inclusion(const InterfaceBond& at) cons
   const Eigen::Vector2d x = plane(body().position(at.point));
   bond.reference = plane(at.end) - x;
   bond.length = (plane(body().position(at.neighbour)) - x).norm();
-  bond.far_volume = std::pow(body().spacing, 2) * body().thickness;
+  bond.far_volume = at.volume;
   bond.correction = correction(at.point);
   bond.end = end_of(static_cast<std::size_t>(&at - body().interface.data()));
   return bond;

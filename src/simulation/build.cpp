@@ -242,6 +242,15 @@ class LoadBuilder {
   /// Mirror layers hold the normal component; a tangential one alone would hold the edge's normal strain at
   /// zero.
   void check_face(std::size_t face) const {
+    if (!faces_[face]) return;
+    const bool holds = std::any_of(body_.ghosts.begin(), body_.ghosts.end(),
+                                   [&](const GhostPoint& ghost) { return ghost.faces.test(face); });
+    if (!holds)
+      throw InputError(
+          face_at_[face],
+          fmt::format("load: no point of the body lies within a horizon of the edge \"{}\" at {} = {:g} m; "
+                      "the load would move nothing",
+                      kFaceNames[face], "xyz"[face / 2], body_.faces[face]));
     if (!faces_[face] || faces_[face]->displacement[face / 2]) return;
     throw InputError(
         face_at_[face],

@@ -223,6 +223,22 @@ void warn_of_volumes(const Simulation& simulation, std::vector<std::string>& lis
 }
 
 /// Points that nothing holds.
+/// Families far larger or smaller than dx makes expect: volumes in another unit than the places, mostly.
+void warn_of_families(const Simulation& simulation, std::vector<std::string>& list) {
+  const Body& body = *simulation.body;
+  const double ratio = body.horizon / body.spacing;
+  const double expected = body.dimension == 1   ? 2 * ratio
+                          : body.dimension == 2 ? std::numbers::pi * ratio * ratio
+                                                : 4.0 / 3 * std::numbers::pi * ratio * ratio * ratio;
+  const double mean =
+      static_cast<double>(simulation.model->bonds()) / static_cast<double>(simulation.model->points());
+  if (mean < 0.5 * expected || mean > 2 * expected)
+    list.push_back(fmt::format(
+        "a point has {:.3g} bonds in the mean, and {:.3g} would be usual for a horizon of {:.3g} "
+        "spacings: dx = {:.4g} m, which the volumes give, does not fit the distances of the points",
+        mean, expected, ratio, body.spacing));
+}
+
 void warn_of_lonely_points(const Simulation& simulation, std::vector<std::string>& list) {
   const Body& body = *simulation.body;
   std::vector<std::size_t> lonely;
@@ -314,6 +330,7 @@ std::vector<std::string> warnings(const Simulation& simulation) {
   if (simulation.input.geometry.points) {
     warn_of_volumes(simulation, list);
     warn_of_lonely_points(simulation, list);
+    warn_of_families(simulation, list);
   }
   for (const Shape& inclusion : body.defects.inclusions) {
     bool near = false;

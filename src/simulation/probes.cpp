@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "verification/interpolate.hpp"
@@ -52,6 +53,14 @@ Point moved(const Point& x, const Point& u) {
 
 Probes::Probes(const Simulation& simulation) : simulation_(simulation) {
   for (const ProbeInput& probe : simulation.input.probes) {
+    const bool plain = std::all_of(probe.name.begin(), probe.name.end(),
+                                   [](char c) { return static_cast<unsigned char>(c) >= ' '; });
+    if (probe.name.empty() || !plain || probe.name == "stretch" || probe.name == "time" ||
+        probe.name == "cycle")
+      throw InputError(
+          probe.at,
+          "probe: the name heads a column of history.csv, beside stretch or time; expected another one, "
+          "of printable characters");
     const std::size_t before = columns_.size();
     add_columns(probe);
     for (std::size_t n = before; n < columns_.size(); ++n)

@@ -75,10 +75,15 @@ RunStatus march_on(const Simulation& simulation, Recorder& recorder, Progress& s
   return RunStatus::failed;
 }
 
-/// The result keeps the tables that it came from: it runs again wherever it is moved, whatever becomes of the
-/// files.
+/// The result keeps the tables and points that it came from: it runs again wherever it is moved, whatever
+/// becomes of the files.
 void keep_tables(Case& input, const std::filesystem::path& folder) {
-  if (!input.tables.empty()) std::filesystem::create_directories(folder / "tables");
+  if (!input.tables.empty() || input.geometry.points) std::filesystem::create_directories(folder / "tables");
+  if (input.geometry.points) {
+    // No table has this name: formulas could not call it.
+    std::filesystem::copy_file(input.geometry.points->list->file, folder / "tables/geometry-points.csv");
+    input.geometry.points->file = "tables/geometry-points.csv";
+  }
   for (TableInput& table : input.tables) {
     const std::string copy = fmt::format("tables/{}.csv", table.name);
     std::filesystem::copy_file(table.function->file(), folder / copy);
@@ -97,8 +102,6 @@ Case with_paths_from(const std::filesystem::path& result, Case input) {
         expect.file = fs::weakly_canonical(folder / expect.file).lexically_relative(result).string();
   };
   fix(input.expects);
-  if (input.geometry.points)
-    input.geometry.points->file = (folder / input.geometry.points->file).lexically_normal().string();
   if (input.short_run) fix(input.short_run->expect);
   return input;
 }

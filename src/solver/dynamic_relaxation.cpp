@@ -49,6 +49,7 @@ class Relaxation {
   State run() {
     constraints_.set_parameter(settings_.start);
     work_.begin(constraints_, settings_.start);
+    offsets_.assign(constraints_.offsets().begin(), constraints_.offsets().end());
     for (const double target : settings_.targets) reach(target);
     return std::move(state_);
   }
@@ -97,29 +98,40 @@ class Relaxation {
   /// Takes the state to a new parameter, or leaves it as it was and says why.
   std::optional<std::string> load_step(double target) {
     const std::vector<double> start = state_.u;
-    predict(target);
     constraints_.set_parameter(target);
+    predict(target);
     auto failure = equilibrate(target);
     if (failure) {
       state_.u = start;
       constraints_.set_parameter(state_.parameter);
       return failure;
     }
-    const double change = target - state_.parameter;
     before_ = start;
-    last_change_ = change;
+    keep_offsets();
     state_.parameter = target;
     ++state_.steps;
     balance();
     return std::nullopt;
   }
 
-  /// First guess of the next state: the path so far, extrapolated, or an affine motion with the load.
+  void keep_offsets() {
+    const auto offsets = constraints_.offsets();
+    last_change_.resize(offsets.size());
+    for (std::size_t c = 0; c < offsets.size(); ++c) last_change_[c] = offsets[c] - offsets_[c];
+    offsets_.assign(offsets.begin(), offsets.end());
+  }
+
+  /// First guess of the next state: the path so far, as far as the loads repeat their last change (not at all
+  /// where they stand still), or an affine motion with them.
   void predict(double target) {
-    const double change = target - state_.parameter;
-    if (last_change_ != 0) {
-      const double ratio = change / last_change_;
-      for (std::size_t i = 0; i < n_; ++i) state_.u[i] += ratio * (state_.u[i] - before_[i]);
+    double last2 = 0, repeated = 0;
+    const auto offsets = constraints_.offsets();
+    for (std::size_t c = 0; c < last_change_.size(); ++c) {
+      last2 += last_change_[c] * last_change_[c];
+      repeated += last_change_[c] * (offsets[c] - offsets_[c]);
+    }
+    if (last2 > 0) {
+      for (std::size_t i = 0; i < n_; ++i) state_.u[i] += repeated / last2 * (state_.u[i] - before_[i]);
       return;
     }
     const AffineIncrement affine = constraints_.affine_increment(state_.parameter, target);
@@ -242,10 +254,10 @@ class Relaxation {
   State state_;
   WorkIntegral work_{WorkIntegral::Rule::parabolic};
   std::vector<double> force_, old_force_, velocity_, mass_;
-  std::vector<double> before_;  // state one load step back
-  double least_reaction_ = 0;   // N, scale of the residual where there is next to no reaction
-  double last_change_ = 0;      // of the parameter in the last load step
-  int good_steps_ = 0;          // since the last cut
+  std::vector<double> before_;                 // state one load step back
+  double least_reaction_ = 0;                  // N, scale of the residual where there is next to no reaction
+  std::vector<double> offsets_, last_change_;  // of the constraints (m): here, and in the last load step
+  int good_steps_ = 0;                         // since the last cut
 };
 
 }  // namespace

@@ -131,7 +131,8 @@ to = ["70 mm", 0]
         self.write("sheet.csv", "\n".join(rows[:1] + rows[21:]) + "\n")  # the lowest row is missing
         said = self.command("check", "case.toml").stdout
         self.assertIn("# warning: the volumes of the points sum to 0.00038 m^3, 5 % less than the box", said)
-        # Far from all others, in a sheet of half the width.
+        # Far from all others, in a sheet of half the width that nothing holds at its right edge.
+        self.write("case.toml", replaced(replaced(text, '"left", "right", "bottom"', '"left", "bottom"'), 'on = "right"', 'on = "left"'))
         narrow = [row for row in rows[1:] if float(row.split(",")[0]) < 0]
         self.write("sheet.csv", "\n".join(rows[:1] + narrow + ["55,5,1000"]) + "\n")
         self.assertRegex(self.command("check", "case.toml").stdout,

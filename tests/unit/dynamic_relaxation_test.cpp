@@ -105,6 +105,22 @@ TEST(DynamicRelaxation, GivesUpOnAnImpossibleLoad) {
   EXPECT_FALSE(problem.log.remarks.empty());
 }
 
+TEST(DynamicRelaxation, StandsStillWhereTheLoadsDo) {
+  // A path with a plateau, as tables have them: the guess of a step must not run on while the loads stand
+  // still.
+  const GradientPath path = [](double l) { return Eigen::Matrix2d{{std::clamp(l, 1.0, 1.3), 0}, {0, 1}}; };
+  Membrane membrane(make_lattice_body(sheet(20, 10, 0.05, Faces(0b0011))), unit_laws()[0].material(),
+                    kStabilisation);
+  Constraints constraints = constrain(membrane, edges(path, Faces(0b0011), true));
+  Log log;
+  const State state = relax(membrane, constraints, {.targets = {1.3, 1.6}}, log);
+  Log again;
+  const State to_plateau = relax(membrane, constraints, {.targets = {1.3}}, again);
+  EXPECT_TRUE(log.remarks.empty());
+  // Each of the three steps of the plateau asks once whether it is in equilibrium.
+  EXPECT_LE(state.evaluations, to_plateau.evaluations + 3);
+}
+
 TEST(DynamicRelaxation, ReportsAFoldInsteadOfAnEquilibrium) {
   // Pressed along x with free sides and no stabilisation, rows of points begin to fold at a stretch of 0.6.
   // The forces balance then, too.
