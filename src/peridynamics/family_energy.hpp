@@ -44,7 +44,7 @@ inline constexpr double kStiffening = 3;
 
 /// Modulus of the stabilisation (Pa) as a function of the family averages: `kappa` at rest and in any
 /// tension, and more where compression makes short waves unstable. Its measure is r = a / J^4, which is 1 at
-/// rest, less in tension and 2.6 in the uniaxial compression (0.63) where a family without stabilisation
+/// rest, less in tension and 2.5 in the uniaxial compression (0.63) where a family without stabilisation
 /// loses stability.
 inline FamilyEnergy stiffened_modulus(double kappa, double a, double b) {
   const double q = 1 / area_ratio_squared(a, b), q2 = q * q, q3 = q2 * q, q4 = q3 * q;

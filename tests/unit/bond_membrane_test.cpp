@@ -293,6 +293,30 @@ TEST(BondMembrane, HasTheCorrectionFactorsOfTheTheoryNote) {
   }
 }
 
+TEST(BondMembrane, TakesTheVolumesBehindAnInclusionFromItsPoints) {
+  // A large point far away makes the mean spacing larger and must not be felt at the inclusion.
+  ListedBodyInput in;
+  for (int i = -8; i < 8; ++i)
+    for (int j = -8; j < 8; ++j) {
+      in.position.push_back({0.1 * i + 0.05, 0.1 * j + 0.05, 0});
+      in.volume.push_back(0.01);
+    }
+  in.horizon = 0.3;
+  in.faces = {-0.8, 9, -0.8, 0.8, -1, 1};
+  in.defects.inclusions.emplace_back(rectangle(0, 0, 0.2, 0.2));  // no point lies near its surface
+  const BondMembrane alone(make_listed_body(in), rubber(), {Loading::uniaxial, false, true});
+  in.position.push_back({8, 0, 0});
+  in.volume.push_back(1);
+  const BondMembrane beside(make_listed_body(in), rubber(), {Loading::uniaxial, false, true});
+  EXPECT_GT(beside.body().spacing, 1.1 * alone.body().spacing);
+  ASSERT_EQ(beside.body().interface.size(), alone.body().interface.size());
+  for (std::size_t n = 0; n < alone.body().points.size(); ++n) {
+    const std::size_t i = alone.body().points[n];
+    // Where a bond meets the surface is found to 1e-9 of the spacing.
+    EXPECT_LT((beside.correction(i) - alone.correction(i)).norm(), 1e-7) << "point " << n;
+  }
+}
+
 TEST(BondMembrane, OfTheEquibiaxialLawIsExactThere) {
   // The correction makes the energy of every family right, and the law is exact in this loading.
   BondMembrane membrane(make_lattice_body(sheet(12, 12, 0.05, all_edges())), rubber(),
