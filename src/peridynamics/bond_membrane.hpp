@@ -56,7 +56,7 @@ class BondMembrane final : public PointModel {
   template <class Visit>
   void for_each_bond(std::size_t point, const Visit& visit) const;
   [[nodiscard]] Bond bond_between(std::size_t point, std::size_t neighbour) const;
-  [[nodiscard]] Bond bond_to_inclusion(const InterfaceBond& bond) const;
+  [[nodiscard]] Bond bond_to_inclusion(const InterfaceBond& at) const;
   [[nodiscard]] Eigen::Vector2d deformed(std::size_t point, const Bond& bond,
                                          std::span<const double> u) const;
   /// Correction factor of a bond: an ellipse through the means of both ends, eq. (43) of the source.

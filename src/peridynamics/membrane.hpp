@@ -62,12 +62,12 @@ class Membrane final : public PointModel {
   /// A point whose family does not follow the lattice's formula: those of listed bodies, and on a lattice
   /// those with repaired weights or bonds to inclusions.
   struct ListedFamily {
-    std::size_t point = 0;
-    bool by_least_squares = false;
-    bool by_gradient = false;
     Eigen::Matrix2d inverse_shape = Eigen::Matrix2d::Zero();  // (sum w n n^T)^-1, for by_gradient
+    std::size_t point = 0;
     // Its bonds; none if all lie on one line, so that the point has no strain energy of its own.
     std::size_t begin = 0, end = 0;
+    bool by_least_squares = false;
+    bool by_gradient = false;
   };
   /// Bonds of the listed families, and in which of them each point is the far end.
   struct ListedFamilyBonds {
