@@ -18,20 +18,20 @@ inline constexpr std::size_t kSumChunk = 2048;
 
 /// Runs `body(begin, end)` for pieces of [0, n), as `parallel_for` does.
 template <class Body>
-void parallel_pieces(std::size_t n, const Body& body) {
-  parallel_for(static_cast<std::ptrdiff_t>((n + kSumChunk - 1) / kSumChunk), [&](std::ptrdiff_t p) {
-    const std::size_t begin = static_cast<std::size_t>(p) * kSumChunk;
-    body(begin, begin + kSumChunk < n ? begin + kSumChunk : n);
+void parallel_pieces(std::size_t n, const Body& body, std::size_t piece = kSumChunk) {
+  parallel_for(static_cast<std::ptrdiff_t>((n + piece - 1) / piece), [&](std::ptrdiff_t p) {
+    const std::size_t begin = static_cast<std::size_t>(p) * piece;
+    body(begin, begin + piece < n ? begin + piece : n);
   });
 }
 
 /// Sum over i in [0, n) of the values that `partial(begin, end)` returns for pieces of fixed length, added in
 /// order: the same bits on any number of threads. `T` needs += and a default value that is zero.
 template <class T, class Partial>
-T ordered_sum(std::size_t n, const Partial& partial) {
-  std::vector<T> sums((n + kSumChunk - 1) / kSumChunk);
-  parallel_pieces(n,
-                  [&](std::size_t begin, std::size_t end) { sums[begin / kSumChunk] = partial(begin, end); });
+T ordered_sum(std::size_t n, const Partial& partial, std::size_t piece = kSumChunk) {
+  std::vector<T> sums((n + piece - 1) / piece);
+  parallel_pieces(
+      n, [&](std::size_t begin, std::size_t end) { sums[begin / piece] = partial(begin, end); }, piece);
   T total{};
   for (const T& sum : sums) total += sum;
   return total;

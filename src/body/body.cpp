@@ -2,7 +2,18 @@
 
 #include <algorithm>
 
+#include "base/lanes.hpp"
+
 namespace riven {
+
+void ListedBonds::close() {
+  const std::size_t points = begin.size() - 1;
+  neighbour.resize(begin.back() + kLanes, 0);
+  masks.assign(begin.back() / 8 + points + 1, 0);
+  for (std::size_t i = 0; i < points; ++i)
+    for (std::size_t n = 0; n < begin[i + 1] - begin[i]; ++n)
+      masks[begin[i] / 8 + i + n / 8] |= static_cast<std::uint8_t>(1U << (n % 8));
+}
 
 Point Body::position(std::size_t point) const {
   const LatticeBonds* on = on_lattice();
@@ -34,7 +45,8 @@ std::size_t Body::bytes() const {
                     points.size() * sizeof(std::size_t) + interface.size() * sizeof(InterfaceBond);
   if (const LatticeBonds* on = on_lattice()) return sum + size() * on->stencil.size() / 8;
   const auto& list = std::get<ListedBonds>(bonds);
-  return sum + size() * (sizeof(Point) + sizeof(std::size_t)) + list.neighbour.size() * sizeof(std::uint32_t);
+  return sum + size() * (sizeof(Point) + sizeof(std::size_t)) +
+         list.neighbour.size() * sizeof(std::uint32_t) + list.masks.size();
 }
 
 Point reflected(const Body& body, const Faces& at, const Point& x) {

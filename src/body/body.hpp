@@ -49,11 +49,19 @@ struct LatticeBonds {
 };
 
 /// Points anywhere: their positions (m), and the neighbours of point i in [begin[i], begin[i + 1]),
-/// ascending.
+/// ascending. A bond that broke stays in the list; its bit says so.
 struct ListedBonds {
   std::vector<Point> position;
   std::vector<std::size_t> begin;
-  std::vector<std::uint32_t> neighbour;
+  std::vector<std::uint32_t> neighbour;  // kLanes entries more than bonds, so that a kernel may read on
+  std::vector<std::uint8_t> masks;       // a bit per bond; those of point i start at byte begin[i] / 8 + i
+
+  /// Ends the making of the list: all bonds in it exist.
+  void close();
+  [[nodiscard]] bool exists(std::size_t point, std::size_t bond) const {
+    const std::size_t n = bond - begin[point];
+    return (masks[begin[point] / 8 + point + n / 8] >> (n % 8) & 1U) != 0;
+  }
 };
 
 /// Material points with bonds between them, on a lattice or listed. Fields have `size()` entries: one per
@@ -98,7 +106,7 @@ struct Body {
     }
     const auto& list = std::get<ListedBonds>(bonds);
     for (std::size_t b = list.begin[point]; b < list.begin[point + 1]; ++b)
-      visit(std::size_t{list.neighbour[b]});
+      if (list.exists(point, b)) visit(std::size_t{list.neighbour[b]});
   }
 };
 

@@ -8,21 +8,23 @@
 
 namespace riven {
 
-/// Which bonds of a lattice body exist: for each offset of the stencil one bit per point, contiguous along a
-/// row, so that one byte is the mask of one vector of points.
+/// Which bonds of a lattice body exist: for each offset of the stencil one bit per point. One byte is the
+/// mask of one vector of points; the bytes of all offsets for the same vector lie side by side, so that a
+/// kernel reads them as one stream and a row writes only its own.
 class BondPlanes {
  public:
   BondPlanes() = default;
   BondPlanes(std::size_t offsets, std::size_t points)
-      : planes_(offsets, std::vector<std::uint8_t>(points / kLanes)) {}
+      : offsets_(offsets), bytes_(offsets * (points / kLanes)) {}
 
   [[nodiscard]] bool exists(std::size_t offset, std::size_t point) const {
-    return ((planes_[offset][point / kLanes] >> (point % kLanes)) & 1U) != 0;
+    return ((masks(point / kLanes)[offset] >> (point % kLanes)) & 1U) != 0;
   }
-  /// Bits of the points [8 block, 8 block + 8).
-  [[nodiscard]] std::uint8_t mask(std::size_t offset, std::size_t block) const {
-    return planes_[offset][block];
+  /// For the points [8 block, 8 block + 8), a byte per offset.
+  [[nodiscard]] const std::uint8_t* masks(std::size_t block) const {
+    return bytes_.data() + offsets_ * block;
   }
+  [[nodiscard]] std::uint8_t* masks(std::size_t block) { return bytes_.data() + offsets_ * block; }
 
   /// Joins a point and its neighbour, seen from both ends.
   void join(const Stencil& stencil, std::size_t offset, std::size_t point) {
@@ -39,14 +41,19 @@ class BondPlanes {
     return static_cast<std::size_t>(static_cast<std::ptrdiff_t>(point) + stencil.shift[offset]);
   }
 
+  /// All bits: what a checkpoint keeps.
+  [[nodiscard]] const std::vector<std::uint8_t>& bytes() const { return bytes_; }
+  [[nodiscard]] std::vector<std::uint8_t>& bytes() { return bytes_; }
+
  private:
   void bit(std::size_t offset, std::size_t point, bool value) {
-    std::uint8_t& byte = planes_[offset][point / kLanes];
+    std::uint8_t& byte = masks(point / kLanes)[offset];
     const auto flag = static_cast<std::uint8_t>(1U << (point % kLanes));
     byte = static_cast<std::uint8_t>(value ? byte | flag : byte & ~flag);
   }
 
-  std::vector<std::vector<std::uint8_t>> planes_;
+  std::size_t offsets_ = 0;
+  std::vector<std::uint8_t> bytes_;
 };
 
 }  // namespace riven

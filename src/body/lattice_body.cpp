@@ -52,7 +52,11 @@ Lattice make_lattice(const LatticeBodyInput& in) {
             "{:g} m; the nearest one that does is {:g} m",
             kFaceNames[2 * a + side], in.spacing, size, size / std::max(1.0, std::round(size / in.spacing))));
   }
-  return {in.dimension, cells, in.spacing, first, stencil_reach(in.horizon, in.spacing)};
+  const int reach = stencil_reach(in.horizon, in.spacing);
+  std::array<int, 3> layers{};  // of ghosts, where there are any
+  for (std::size_t a = 0; a < 3; ++a)
+    if (in.mirrored.test(2 * a) || in.mirrored.test(2 * a + 1)) layers[a] = reach;
+  return {in.dimension, cells, in.spacing, first, reach, layers};
 }
 
 /// Kinds and volumes of the body's own cells.
@@ -175,6 +179,7 @@ class BondMaker {
   bool make_bond(std::size_t i, const Cell& cell, const Point& x, std::size_t k, bool near_defect) {
     const Cell& o = stencil_.offset[k];
     const Cell other{cell[0] + o[0], cell[1] + o[1], cell[2] + o[2]};
+    if (!lattice_.stored(other)) return false;
     const std::size_t j = BondPlanes::neighbour(stencil_, k, i);
     if (body_.kind[j] == PointKind::outside) return false;
     BondRules::Bond bond;

@@ -128,6 +128,7 @@ class ListedBodyMaker {
       list_.neighbour.insert(list_.neighbour.end(), of_point.begin(), of_point.end());
       list_.begin.push_back(list_.neighbour.size());
     }
+    list_.close();
   }
 
   void find_complete(const std::vector<double>& family) {
@@ -177,6 +178,7 @@ Body listed(const Body& lattice_body) {
     std::sort(list.neighbour.begin() + static_cast<std::ptrdiff_t>(first), list.neighbour.end());
     list.begin.push_back(list.neighbour.size());
   }
+  list.close();
   for (std::size_t& i : body.points) i = number[i];
   for (auto& points : body.rigid_points)
     for (std::size_t& i : points) i = number[i];

@@ -11,20 +11,23 @@ namespace riven {
 /// above.
 using Cell = std::array<int, 3>;
 
-/// A uniform lattice in 1, 2 or 3 dimensions: one point at the centre of each cell, `reach` layers of room
-/// for ghost points around them, x running fastest. Rows are padded to whole vectors and the ends of the
-/// storage are padded too, so that a kernel may load whole vectors at any neighbour of any row.
+/// A uniform lattice in 1, 2 or 3 dimensions: one point at the centre of each cell, with room for layers of
+/// ghost points around them, x running fastest. Rows are padded to whole vectors and the ends of the storage
+/// by the reach of a bond, so that a kernel may load whole vectors at any neighbour of any row; beyond the
+/// ghost layers what it finds there are other points.
 class Lattice {
  public:
   Lattice() = default;
-  /// `first`: position of cell (0, 0, 0) in metres; `cells`: number along each axis, 1 beyond the dimension.
-  Lattice(int dimension, std::array<int, 3> cells, double spacing, const Point& first, int reach);
+  /// `first`: position of cell (0, 0, 0) in metres; `cells`: number along each axis, 1 beyond the dimension;
+  /// `reach`: of a bond, in cells; `layers` of ghost cells on both sides of each axis.
+  Lattice(int dimension, std::array<int, 3> cells, double spacing, const Point& first, int reach,
+          std::array<int, 3> layers);
 
   [[nodiscard]] int dimension() const { return dimension_; }
   [[nodiscard]] const std::array<int, 3>& cells() const { return cells_; }
   [[nodiscard]] double spacing() const { return spacing_; }
-  /// Layers of ghost cells on both sides of an axis; 0 beyond the dimension.
-  [[nodiscard]] int reach(int axis) const { return axis < dimension_ ? reach_ : 0; }
+  /// Layers of ghost cells on both sides of an axis.
+  [[nodiscard]] int layers(std::size_t axis) const { return layers_[axis]; }
 
   /// Entries of a field's storage, padding included; a multiple of kLanes.
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -47,15 +50,15 @@ class Lattice {
   /// Calls visit(cell, index) for every cell of the box grown by the ghost layers, in storage order.
   template <class Visit>
   void for_each_cell(const Visit& visit) const {
-    for (int k = -reach(2); k < cells_[2] + reach(2); ++k)
-      for (int j = -reach(1); j < cells_[1] + reach(1); ++j)
-        for (int i = -reach(0); i < cells_[0] + reach(0); ++i) visit(Cell{i, j, k}, index({i, j, k}));
+    for (int k = -layers(2); k < cells_[2] + layers(2); ++k)
+      for (int j = -layers(1); j < cells_[1] + layers(1); ++j)
+        for (int i = -layers(0); i < cells_[0] + layers(0); ++i) visit(Cell{i, j, k}, index({i, j, k}));
   }
 
  private:
   int dimension_ = 0;
-  int reach_ = 0;
   std::array<int, 3> cells_{1, 1, 1};
+  std::array<int, 3> layers_{};
   double spacing_ = 0;
   Point first_{};
   std::size_t left_ = 0;  // padding before cell 0 of a row

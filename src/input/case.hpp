@@ -68,20 +68,22 @@ struct SetInput {  // [set.NAME]: exactly one of where and a shape
 };
 
 struct ModelInput {               // [model]
-  std::string kind = "membrane";  // or "membrane-bond"
+  std::string kind = "membrane";  // or "membrane-bond", "pmb"
   double stabilisation = 4;       // membrane: factor G of the stabilisation energy; 0 switches it off
   // membrane-bond
   std::string loading;                    // "equibiaxial", "planar", "uniaxial", "uniaxial-compression"
   std::string variant;                    // "published" or "zero-residual"
   std::string surface_correction = "on";  // or "off"
+  std::string plane = "stress";           // pmb in two dimensions: or "strain"
   Location at;
 };
 
 struct MaterialInput {  // [material.NAME]
   std::string name;
-  std::string law;                       // "neo-hookean", "mooney-rivlin", "yeoh"
+  std::string law;                       // "neo-hookean", "mooney-rivlin", "yeoh", "linear-elastic"
   double density = 0;                    // kg/m^3
   std::optional<double> youngs_modulus;  // neo-hookean: one of E, mu, c10
+  std::optional<double> poissons_ratio, critical_stretch;  // linear-elastic
   std::optional<double> shear_modulus;
   std::optional<double> c10, c01, c20, c30;  // Pa
   Location at;

@@ -135,9 +135,10 @@ Format describe(ModelInput& model) {
       .doc = "How points interact.",
       .at = &model.at,
       .keys = {
-          Key{"kind", Text{&model.kind, {"membrane", "membrane-bond"}},
-              "`membrane`: state-based, for any loading and law, the one to use. `membrane-bond`: the "
-              "published bond-based one, to compare with."}
+          Key{"kind", Text{&model.kind, {"membrane", "membrane-bond", "pmb"}},
+              "`membrane`: rubber sheets, state-based, for any loading and law. `membrane-bond`: the "
+              "published bond-based one, to compare with. `pmb`: linear springs that break, for brittle "
+              "bodies in one, two or three dimensions."}
               .otherwise("\"membrane\""),
           Key{"stabilisation", Quantity{&model.stabilisation, dimension::none, not_negative},
               "Factor of the stabilisation energy; 0 switches it off."}
@@ -155,7 +156,12 @@ Format describe(ModelInput& model) {
               "Whether bonds are scaled so that each point has the local energy at stretch 4 (for "
               "compression: 0.5)."}
               .otherwise("\"on\"")
-              .applies(kind("membrane-bond"))}};
+              .applies(kind("membrane-bond")),
+          Key{"plane", Text{&model.plane, {"stress", "strain"}},
+              "What holds a body in two dimensions across: nothing (Poisson's ratio 1/3), or rigid walls "
+              "(1/4)."}
+              .otherwise("\"stress\"")
+              .applies(kind("pmb"))}};
 }
 
 Format describe(MaterialInput& m, const Case& c) {
@@ -167,12 +173,20 @@ Format describe(MaterialInput& m, const Case& c) {
       .doc = "A constitutive law and its parameters. For now a case has exactly one material.",
       .at = &m.at,
       .keys =
-          {Key{"law", Text{&m.law, {"neo-hookean", "mooney-rivlin", "yeoh"}}, "The constitutive law."}
+          {Key{"law", Text{&m.law, {"neo-hookean", "mooney-rivlin", "yeoh", "linear-elastic"}},
+               "The constitutive law; `linear-elastic` belongs to the model `pmb`, the others to membranes."}
                .required(),
            Key{"density", Quantity{&m.density, dimension::density, positive}, "Needed where inertia counts."}
                .required_if(method(c, verlet)),
-           Key{"youngs_modulus", modulus(m.youngs_modulus, positive), "Young's modulus."}.applies(
-               law({"neo-hookean"})),
+           Key{"youngs_modulus", modulus(m.youngs_modulus, positive), "Young's modulus."}
+               .applies(law({"neo-hookean", "linear-elastic"}))
+               .required_if(law({"linear-elastic"})),
+           Key{"poissons_ratio", Quantity{&m.poissons_ratio, dimension::none, any_number},
+               "To be checked: the model `pmb` has one of its own."}
+               .applies(law({"linear-elastic"})),
+           Key{"critical_stretch", Quantity{&m.critical_stretch, dimension::none, positive},
+               "Elongation over length at which a bond breaks for good; without it none breaks."}
+               .applies(law({"linear-elastic"})),
            Key{"shear_modulus", modulus(m.shear_modulus, positive), "Shear modulus."}.applies(
                law({"neo-hookean"})),
            Key{"c10", modulus(m.c10, any_number), "First parameter of the law."}.required_if(

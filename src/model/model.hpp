@@ -38,6 +38,14 @@ class Model {
   [[nodiscard]] virtual std::optional<Breakdown> internal_force(std::span<const double> u,
                                                                 std::span<double> force) = 0;
 
+  /// The same where a state is one that the body goes through, not one that a solver only tries: what is
+  /// irreversible happens first, such as bonds that break.
+  [[nodiscard]] virtual std::optional<Breakdown> advance(std::span<const double> u, std::span<double> force) {
+    return internal_force(u, force);
+  }
+  /// Energy (J) that `advance` has taken from the body so far.
+  [[nodiscard]] virtual double dissipated_energy() const { return 0; }
+
   /// Strain energy E (J).
   [[nodiscard]] virtual double strain_energy(std::span<const double> u) = 0;
 

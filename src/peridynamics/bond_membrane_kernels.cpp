@@ -20,7 +20,7 @@ void BondMembrane::gather_row(const LatticeBonds& on, std::size_t row, std::span
     const Lanes x = lanes(ux, i), y = lanes(uy, i);
     Lanes fx{}, fy{};
     for (std::size_t k = 0; k < stencil_.size(); ++k) {
-      const std::uint8_t bits = on.bonds.mask(k, i / kLanes);
+      const std::uint8_t bits = on.bonds.masks(i / kLanes)[k];
       if (bits == 0) continue;
       const StencilBond& bond = stencil_[k];
       const Lanes yx = bond.x + (lanes(ux, i, bond.shift) - x), yy = bond.y + (lanes(uy, i, bond.shift) - y);

@@ -69,7 +69,7 @@ void Membrane::average_row(const LatticeBonds& on, std::size_t row, std::span<co
     const auto coefficients = load_all(coefficient_, i);
     Lanes s2_sum{}, s4_sum{}, gxx{}, gxy{}, gyx{}, gyy{};
     for (std::size_t k = 0; k < stencil_.size(); ++k) {
-      const std::uint8_t bits = on.bonds.mask(k, i / kLanes);
+      const std::uint8_t bits = on.bonds.masks(i / kLanes)[k];
       if (bits == 0) continue;
       const StencilBond& bond = stencil_[k];
       const Vector du = difference(ux, uy, i, bond.shift);
@@ -202,7 +202,7 @@ void Membrane::gather_row(const LatticeBonds& on, std::size_t row, std::span<con
     const auto n_own = load_all(force_n_, i);
     Lanes fx{}, fy{};
     for (std::size_t k = 0; k < stencil_.size(); ++k) {
-      const std::uint8_t bits = on.bonds.mask(k, i / kLanes);
+      const std::uint8_t bits = on.bonds.masks(i / kLanes)[k];
       if (bits == 0) continue;
       const StencilBond& bond = stencil_[k];
       const Vector du = difference(ux, uy, i, bond.shift);

@@ -33,6 +33,8 @@ class PointModel : public Model {
   [[nodiscard]] virtual std::size_t bytes() const = 0;
 
  protected:
+  /// For models whose bonds break.
+  [[nodiscard]] Body& own_body() { return body_; }
   /// `density` in kg/m^3, of the inclusions too. Throws InputError unless the inclusions are discs or boxes
   /// of a two-dimensional body.
   PointModel(Body body, double density);

@@ -307,7 +307,7 @@ std::vector<std::string> warnings(const Simulation& simulation) {
   std::vector<std::string> list;
   const Body& body = *simulation.body;
   const double ratio = body.horizon / body.spacing;
-  if (ratio < 2.9)
+  if (ratio < 2.9 && body.dimension > 1)
     list.push_back(fmt::format(
         "the horizon is {:.3g} spacings: families of so few directions are stiff along the lattice; 3 "
         "is usual",

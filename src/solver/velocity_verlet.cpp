@@ -119,7 +119,7 @@ class Verlet {
 
   void evaluate() {
     ++state_.evaluations;
-    if (const auto breakdown = model_.internal_force(state_.u, force_)) fail(*breakdown);
+    if (const auto breakdown = model_.advance(state_.u, force_)) fail(*breakdown);
     constraints_.reduce(force_);
   }
 
@@ -158,8 +158,9 @@ class Verlet {
     energy.kinetic =
         ordered_sum_of(n_, [&](std::size_t i) { return 0.5 * mass_[i] * state_.v[i] * state_.v[i]; });
     energy.strain = model_.strain_energy(state_.u) - start_energy_;
-    energy.largest =
-        std::max({energy.largest, energy.kinetic, std::abs(energy.strain), std::abs(energy.external_work)});
+    energy.dissipated = model_.dissipated_energy();
+    energy.largest = std::max({energy.largest, energy.kinetic, std::abs(energy.strain), energy.dissipated,
+                               std::abs(energy.external_work)});
   }
 
   void check_points() {

@@ -1,0 +1,259 @@
+#include "peridynamics/pmb.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/lanes.hpp"
+#include "base/parallel.hpp"
+
+namespace riven {
+
+namespace {
+
+constexpr std::size_t kPiece = 256;  // points that a thread takes at a time
+
+/// Energy density over the squared strain of the continuum, stretched equally in all directions.
+double dilatation_modulus(const PmbSettings& settings, int dimension) {
+  const double e = settings.youngs_modulus;
+  if (dimension == 1) return e / 2;
+  if (dimension == 3) return 3 * e;  // 9 K / 2 with Poisson's ratio 1/4
+  return settings.plane == Plane::stress ? e / (1 - 1.0 / 3) : e / ((1 + 0.25) * (1 - 0.5));
+}
+
+}  // namespace
+
+Pmb::Pmb(Body body, const PmbSettings& settings)
+    : PointModel(std::move(body), settings.density),
+      settings_(settings),
+      kernels_(pmb_kernels(Pmb::body().dimension)) {
+  if (!Pmb::body().defects.inclusions.empty())
+    throw InputError("the model \"pmb\" has no rigid inclusions; expected holes and cracks only");
+  weight_ = Pmb::body().volume;
+  for (const GhostPoint& ghost : Pmb::body().ghosts)
+    weight_[ghost.point] = 0.5 * Pmb::body().volume[ghost.master];
+  micromodulus_ = 4 * dilatation_modulus(settings_, Pmb::body().dimension) / family_moment();
+  if (const LatticeBonds* on = Pmb::body().on_lattice()) {
+    make_lattice_kernel(*on);
+  } else {
+    make_list_kernel(std::get<ListedBonds>(Pmb::body().bonds));
+  }
+}
+
+double Pmb::poissons_ratio() const {
+  return body().dimension == 2 && settings_.plane == Plane::stress ? 1.0 / 3 : 0.25;
+}
+
+double Pmb::full_volume(std::size_t point) const {
+  return body().kind[point] == PointKind::ghost ? 2 * weight_[point] : weight_[point];
+}
+
+/// Sum of length times volume over a whole family (m^4): that of the stencil, or the median of the complete
+/// families of a list, which is the same for points of a lattice whatever its defects.
+double Pmb::family_moment() const {
+  if (const LatticeBonds* on = body().on_lattice()) {
+    const double cell = std::pow(body().spacing, body().dimension) * body().thickness;
+    double moment = 0;
+    for (const double length : on->stencil.length) moment += length * cell;
+    return moment;
+  }
+  std::vector<double> moments;
+  for (const std::size_t i : body().points) {
+    if (!body().complete[i]) continue;
+    double& moment = moments.emplace_back(0);
+    const Point x = body().position(i);
+    body().for_each_neighbour(i, [&](std::size_t j) {
+      const Point y = body().position(j);
+      moment += std::hypot(y[0] - x[0], y[1] - x[1], y[2] - x[2]) * full_volume(j);
+    });
+  }
+  const auto middle = moments.begin() + static_cast<std::ptrdiff_t>(moments.size() / 2);
+  std::nth_element(moments.begin(), middle, moments.end());
+  return *middle;
+}
+
+void Pmb::make_lattice_kernel(const LatticeBonds& on) {
+  const Stencil& stencil = on.stencil;
+  for (std::size_t k = 0; k < stencil.size(); ++k) {
+    const double limit = stencil.length[k] * (1 + settings_.critical_stretch);
+    lattice_.stencil.push_back(
+        {stencil.shift[k], stencil.bond[k], stencil.length[k], 1 / stencil.length[k], limit * limit});
+  }
+  std::size_t intact = 0;
+  for (std::size_t block = 0; block < body().size() / kLanes; ++block) {
+    const std::uint8_t* masks = on.bonds.masks(block);
+    const auto all = [&](std::uint8_t value) {
+      return std::all_of(masks, masks + stencil.size(), [value](std::uint8_t mask) { return mask == value; });
+    };
+    lattice_.blocks.push_back(all(0) ? BlockKind::empty : all(0xff) ? BlockKind::intact : BlockKind::partial);
+    intact += lattice_.blocks.back() == BlockKind::intact ? 1 : 0;
+  }
+  lattice_.masks = std::get<LatticeBonds>(own_body().bonds).bonds.masks(0);
+  lattice_.weight = weight_.data();
+  lattice_.stiffness = micromodulus_;
+  const double first = weight_[body().points.front()];
+  if (body().ghosts.empty() && std::all_of(body().points.begin(), body().points.end(),
+                                           [&](std::size_t i) { return weight_[i] == first; }))
+    lattice_.uniform_weight = first;
+}
+
+void Pmb::make_list_kernel(const ListedBonds& list) {
+  const std::size_t size = body().size();
+  list_.points.resize(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    list_.points[i].x = list.position[i];
+    list_.points[i].weight = weight_[i];
+  }
+  list_.inverse_length.assign(list.begin.back() + kLanes, 0.0);
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t b = list.begin[i]; b < list.begin[i + 1]; ++b) {
+      double length2 = 0;
+      for (std::size_t d = 0; d < static_cast<std::size_t>(body().dimension); ++d) {
+        const double xi = list.position[list.neighbour[b]][d] - list.position[i][d];
+        length2 += xi * xi;
+      }
+      list_.inverse_length[b] = 1 / std::sqrt(length2);
+    }
+  list_.begin = list.begin.data();
+  list_.neighbour = list.neighbour.data();
+  list_.masks = std::get<ListedBonds>(own_body().bonds).masks.data();
+  list_.limit2 = (1 + settings_.critical_stretch) * (1 + settings_.critical_stretch);
+  list_.stiffness = micromodulus_;
+}
+
+/// Shows the kernels a state and where their result goes.
+void Pmb::look_at(std::span<const double> u, std::span<double> out) {
+  const std::size_t size = body().size();
+  const auto dimension = static_cast<std::size_t>(body().dimension);
+  for (std::size_t d = 0; d < dimension; ++d) {
+    lattice_.u[d] = u.data() + d * size;
+    lattice_.out[d] = list_.out[d] = out.empty() ? nullptr : out.data() + d * size;
+  }
+  parallel_pieces(list_.points.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t d = 0; d < dimension; ++d) list_.points[i].u[d] = u[d * size + i];
+  });
+}
+
+void Pmb::evaluate(std::span<const double> u, std::span<double> force, bool breaks) {
+  look_at(u, force);
+  dissipated_ += ordered_sum<double>(
+      body().size(),
+      [&](std::size_t begin, std::size_t end) {
+        return body().on_lattice() != nullptr ? kernels_.lattice_force(lattice_, begin, end, breaks)
+                                              : kernels_.listed_force(list_, begin, end, breaks);
+      },
+      kPiece);
+}
+
+std::optional<Breakdown> Pmb::internal_force(std::span<const double> u, std::span<double> force) {
+  evaluate(u, force, false);
+  return std::nullopt;
+}
+
+std::optional<Breakdown> Pmb::advance(std::span<const double> u, std::span<double> force) {
+  evaluate(u, force, true);
+  return std::nullopt;
+}
+
+double Pmb::strain_energy(std::span<const double> u) {
+  look_at(u, {});
+  return ordered_sum<double>(
+      body().size(),
+      [&](std::size_t begin, std::size_t end) {
+        return body().on_lattice() != nullptr ? kernels_.lattice_energy(lattice_, begin, end)
+                                              : kernels_.listed_energy(list_, begin, end);
+      },
+      kPiece);
+}
+
+void Pmb::stiffness_bound(std::span<const double> u, std::span<double> bound) {
+  look_at(u, bound);
+  parallel_pieces(
+      body().size(),
+      [&](std::size_t begin, std::size_t end) {
+        if (body().on_lattice() != nullptr) {
+          kernels_.lattice_bound(lattice_, begin, end);
+        } else {
+          kernels_.listed_bound(list_, begin, end);
+        }
+      },
+      kPiece);
+}
+
+std::optional<Breakdown> Pmb::inspect(std::span<const double> /*u*/) {
+  return std::nullopt;
+}
+
+template <class Visit>
+void Pmb::for_each_pull(std::size_t point, std::span<const double> u, const Visit& visit) const {
+  const Point x = body().position(point);
+  body().for_each_neighbour(point, [&](std::size_t j) {
+    const Point y = body().position(j);
+    Pull pull{.neighbour = j, .reference = Eigen::Vector3d::Zero(), .deformed = {}};
+    Eigen::Vector3d eta = Eigen::Vector3d::Zero();
+    for (int d = 0; d < body().dimension; ++d) {
+      const std::size_t plane = static_cast<std::size_t>(d) * body().size();
+      pull.reference[d] = y[static_cast<std::size_t>(d)] - x[static_cast<std::size_t>(d)];
+      eta[d] = u[plane + j] - u[plane + point];
+    }
+    pull.deformed = pull.reference + eta;
+    const double length = pull.reference.norm(), r = pull.deformed.norm();
+    const double stretch = eta.dot(pull.reference + pull.deformed) / (length * (r + length));
+    pull.energy = 0.5 * micromodulus_ * stretch * stretch * length;
+    pull.per_length = micromodulus_ * stretch / r;
+    visit(pull);
+  });
+}
+
+void Pmb::plain_force(std::span<const double> u, std::span<double> force) const {
+  for (std::size_t i = 0; i < body().size(); ++i) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for_each_pull(i, u, [&](const Pull& pull) {
+      sum += weight_[i] * weight_[pull.neighbour] * pull.per_length * pull.deformed;
+    });
+    for (int d = 0; d < body().dimension; ++d)
+      force[static_cast<std::size_t>(d) * body().size() + i] = sum[d];
+  }
+}
+
+std::vector<ModelField> Pmb::fields(std::span<const double> u) {
+  ModelField energy{"strain_energy_density", 1, {}}, stress{"nominal_stress", 9, {}};
+  for (const std::size_t i : body().points) {
+    double w = 0;
+    Eigen::Matrix3d p = Eigen::Matrix3d::Zero();
+    for_each_pull(i, u, [&](const Pull& pull) {
+      const double half = 0.5 * full_volume(pull.neighbour);
+      w += half * pull.energy;
+      p += half * pull.per_length * pull.deformed * pull.reference.transpose();
+    });
+    energy.values.push_back(w);
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) stress.values.push_back(p(a, b));
+  }
+  return {damage(), std::move(energy), std::move(stress)};
+}
+
+std::vector<std::string> Pmb::describe() const {
+  std::vector<std::string> lines = {
+      fmt::format("material: micromodulus {:.6g} N/m^6, from the sum over a family", micromodulus_)};
+  if (body().dimension > 1)
+    lines.push_back(fmt::format("material: Poisson's ratio {:.4g}, that of the model{}", poissons_ratio(),
+                                body().dimension == 3              ? ""
+                                : settings_.plane == Plane::stress ? " in plane stress"
+                                                                   : " in plane strain"));
+  lines.push_back(
+      std::isfinite(settings_.critical_stretch)
+          ? fmt::format("failure: bonds break beyond a stretch of {:.6g}", settings_.critical_stretch)
+          : "failure: none, bonds never break");
+  return lines;
+}
+
+std::size_t Pmb::bytes() const {
+  return body().bytes() + weight_.size() * sizeof(double) + lattice_.blocks.size() +
+         list_.points.size() * sizeof(PmbPoint) + list_.inverse_length.size() * sizeof(double);
+}
+
+}  // namespace riven

@@ -1,0 +1,345 @@
+// The loops over bonds of the PMB model, in the lanes of one instruction set (for_each_instruction_set.inl).
+// On a lattice the lanes are eight points of a row at the same bond of the stencil, in a list eight bonds of
+// a point.
+
+/// Eight bonds: deformed bond vectors Y and displacement differences eta (m).
+template <int D>
+struct Bonds {
+  Lanes y[D];
+  Lanes eta[D];
+};
+
+template <int D>
+RIVEN_INLINE Lanes dot(const Lanes (&a)[D], const Lanes (&b)[D]) {
+  Lanes sum = a[0] * b[0];
+  RIVEN_UNROLL
+  for (int d = 1; d < D; ++d) sum = sum + a[d] * b[d];
+  return sum;
+}
+
+/// Bond k of eight points of a lattice.
+template <int D>
+RIVEN_INLINE Bonds<D> bonds_at(const PmbLattice& on, const PmbBond& bond, std::size_t point,
+                               const Lanes (&u)[D]) {
+  Bonds<D> bonds;
+  RIVEN_UNROLL
+  for (int d = 0; d < D; ++d) {
+    bonds.eta[d] =
+        load(on.u[static_cast<std::size_t>(d)] + static_cast<std::ptrdiff_t>(point) + bond.shift) - u[d];
+    bonds.y[d] = bond.xi[static_cast<std::size_t>(d)] + bonds.eta[d];
+  }
+  return bonds;
+}
+
+template <int D>
+RIVEN_INLINE void load_displacements(const PmbLattice& on, std::size_t point, Lanes (&u)[D]) {
+  RIVEN_UNROLL
+  for (int d = 0; d < D; ++d) u[d] = load(on.u[static_cast<std::size_t>(d)] + point);
+}
+
+RIVEN_INLINE Lanes weights_at(const PmbLattice& on, const PmbBond& bond, std::size_t point) {
+  return load(on.weight + static_cast<std::ptrdiff_t>(point) + bond.shift);
+}
+
+/// Forces on eight points: f = c (1/L - 1/r) Y V per bond, with r = |Y|. The same as c s Y / r with the
+/// stretch s = (r - L) / L, in one root. Returns whether a bond is beyond its limit.
+template <int D, bool kUniform, bool kIntact>
+RIVEN_INLINE bool pull_block(const PmbLattice& on, std::size_t block) {
+  const std::size_t point = block * kLanes, count = on.stencil.size();
+  const std::uint8_t* masks = on.masks + block * count;
+  Lanes u[D], force[D];
+  load_displacements(on, point, u);
+  RIVEN_UNROLL
+  for (Lanes& component : force) component = broadcast(0);
+  Mask beyond;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!kIntact && masks[k] == 0) continue;
+    const PmbBond& bond = on.stencil[k];
+    const Bonds<D> at = bonds_at(on, bond, point, u);
+    const Lanes r2 = dot(at.y, at.y);
+    Lanes pull = bond.inverse_length - inverse_root(r2);
+    Mask is_long = greater(r2, bond.limit2);
+    if (!kIntact) {
+      const Mask exists = expand(masks[k]);
+      pull = select(exists, pull);
+      is_long = is_long & exists;
+    }
+    if (!kUniform) pull = pull * weights_at(on, bond, point);
+    beyond = beyond | is_long;
+    RIVEN_UNROLL
+    for (int d = 0; d < D; ++d) force[d] += pull * at.y[d];
+  }
+  const Lanes scale = kUniform ? broadcast(on.stiffness * on.uniform_weight * on.uniform_weight)
+                               : on.stiffness * load(on.weight + point);
+  RIVEN_UNROLL
+  for (int d = 0; d < D; ++d) store(on.out[static_cast<std::size_t>(d)] + point, scale * force[d]);
+  return bits_of(beyond) != 0;
+}
+
+/// Breaks the bonds of eight points that are beyond their limit. Returns this end's half of their energy.
+template <int D>
+double break_block(PmbLattice& on, std::size_t block) {
+  const std::size_t point = block * kLanes, count = on.stencil.size();
+  std::uint8_t* masks = on.masks + block * count;
+  Lanes u[D];
+  load_displacements(on, point, u);
+  double energy = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const PmbBond& bond = on.stencil[k];
+    const Bonds<D> at = bonds_at(on, bond, point, u);
+    const Lanes r2 = dot(at.y, at.y);
+    const std::uint8_t broken = bits_of(greater(r2, bond.limit2) & expand(masks[k]));
+    if (broken == 0) continue;
+    masks[k] = static_cast<std::uint8_t>(masks[k] & ~broken);
+    on.blocks[block] = BlockKind::partial;
+    double r2_of[kLanes];
+    store(r2_of, r2);
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      if ((broken >> l & 1U) == 0) continue;
+      const double stretch = __builtin_sqrt(r2_of[l]) * bond.inverse_length - 1;
+      const std::size_t end = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(point + l) + bond.shift);
+      energy += 0.25 * on.stiffness * stretch * stretch * bond.length * on.weight[point + l] * on.weight[end];
+    }
+  }
+  return energy;
+}
+
+template <int D, bool kUniform>
+RIVEN_INLINE bool pull_block_of_any_kind(const PmbLattice& on, std::size_t block) {
+  return on.blocks[block] == BlockKind::intact ? pull_block<D, kUniform, true>(on, block)
+                                               : pull_block<D, kUniform, false>(on, block);
+}
+
+template <int D, bool kUniform>
+double pull_blocks(PmbLattice& on, std::size_t begin, std::size_t end, bool breaks) {
+  double energy = 0;
+  for (std::size_t block = begin / kLanes; block < end / kLanes; ++block) {
+    if (on.blocks[block] == BlockKind::empty) continue;
+    const bool beyond = pull_block_of_any_kind<D, kUniform>(on, block);
+    if (!beyond || !breaks) continue;
+    energy += break_block<D>(on, block);
+    pull_block_of_any_kind<D, kUniform>(on, block);
+  }
+  return energy;
+}
+
+template <int D>
+double lattice_force(PmbLattice& on, std::size_t begin, std::size_t end, bool breaks) {
+  return on.uniform_weight > 0 ? pull_blocks<D, true>(on, begin, end, breaks)
+                               : pull_blocks<D, false>(on, begin, end, breaks);
+}
+
+/// s^2 L of eight bonds, without cancellation for small strains: r^2 - L^2 = eta (xi + Y).
+template <int D>
+RIVEN_INLINE Lanes squared_stretch_times_length(const Bonds<D>& at, Lanes inverse_length) {
+  Lanes sums[D];
+  RIVEN_UNROLL
+  for (int d = 0; d < D; ++d) sums[d] = (at.y[d] - at.eta[d]) + at.y[d];
+  const Lanes r2 = dot(at.y, at.y), r = r2 * inverse_root(r2);
+  const Lanes stretch = dot(at.eta, sums) * inverse_length * inverse_length / (r * inverse_length + 1.0);
+  return stretch * stretch / inverse_length;
+}
+
+template <int D>
+double lattice_energy(const PmbLattice& on, std::size_t begin, std::size_t end) {
+  Lanes energy = broadcast(0);
+  for (std::size_t point = begin; point < end; point += kLanes) {
+    const std::uint8_t* masks = on.masks + point / kLanes * on.stencil.size();
+    Lanes u[D], of_point = broadcast(0);
+    load_displacements(on, point, u);
+    for (std::size_t k = 0; k < on.stencil.size(); ++k) {
+      if (masks[k] == 0) continue;
+      const PmbBond& bond = on.stencil[k];
+      const Lanes w =
+          squared_stretch_times_length(bonds_at(on, bond, point, u), broadcast(bond.inverse_length));
+      of_point += select(expand(masks[k]), w * weights_at(on, bond, point));
+    }
+    energy += of_point * load(on.weight + point);
+  }
+  return 0.25 * on.stiffness * sum(energy);
+}
+
+/// Bounds the rows of the tangent. A bond's block is c (1/L e e^T + (1/L - 1/r) (I - e e^T)); the point's own
+/// block is the sum over its bonds, of which the norm counts, and each far end has one of them.
+template <int D>
+struct RowBound {
+  Lanes own[D][D];  // upper half
+  Lanes far;
+
+  RIVEN_INLINE RowBound() {
+    RIVEN_UNROLL
+    for (auto& row : own) RIVEN_UNROLL
+    for (Lanes& entry : row) entry = broadcast(0);
+    far = broadcast(0);
+  }
+  RIVEN_INLINE void add(const Lanes (&y)[D], Lanes inverse_length, Mask exists, Lanes weight) {
+    const Lanes inverse_r = inverse_root(dot(y, y));
+    const Lanes along = select(exists, weight * inverse_length);
+    const Lanes across = select(exists, weight * magnitude(inverse_length - inverse_r));
+    const Lanes excess = select(exists, (along - across) * inverse_r * inverse_r);
+    RIVEN_UNROLL
+    for (int a = 0; a < D; ++a) {
+      RIVEN_UNROLL
+      for (int b = a; b < D; ++b) own[a][b] += select(exists, excess * y[a] * y[b]);
+      own[a][a] += across;
+    }
+    far += maximum(along, across);
+  }
+};
+
+/// Largest sum of |entries| in a row of the own block, plus the far ends.
+template <int D>
+RIVEN_INLINE double row_bound(const double (&own)[D][D], double far) {
+  double largest = 0;
+  RIVEN_UNROLL
+  for (int a = 0; a < D; ++a) {
+    double row = 0;
+    RIVEN_UNROLL
+    for (int b = 0; b < D; ++b) row += __builtin_fabs(a < b ? own[a][b] : own[b][a]);
+    largest = row > largest ? row : largest;
+  }
+  return largest + far;
+}
+
+template <int D>
+void lattice_bound(const PmbLattice& on, std::size_t begin, std::size_t end) {
+  for (std::size_t point = begin; point < end; point += kLanes) {
+    const std::uint8_t* masks = on.masks + point / kLanes * on.stencil.size();
+    Lanes u[D];
+    load_displacements(on, point, u);
+    RowBound<D> rows;
+    for (std::size_t k = 0; k < on.stencil.size(); ++k) {
+      if (masks[k] == 0) continue;
+      const PmbBond& bond = on.stencil[k];
+      rows.add(bonds_at(on, bond, point, u).y, broadcast(bond.inverse_length), expand(masks[k]),
+               weights_at(on, bond, point));
+    }
+    double own[D][D][kLanes], far[kLanes];
+    RIVEN_UNROLL
+    for (int a = 0; a < D; ++a) RIVEN_UNROLL
+    for (int b = a; b < D; ++b) store(own[a][b], rows.own[a][b]);
+    store(far, rows.far);
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      double of_point[D][D];
+      RIVEN_UNROLL
+      for (int a = 0; a < D; ++a) RIVEN_UNROLL
+      for (int b = a; b < D; ++b) of_point[a][b] = own[a][b][l];
+      RIVEN_UNROLL
+      for (int d = 0; d < D; ++d)
+        on.out[static_cast<std::size_t>(d)][point + l] =
+            on.stiffness * on.weight[point + l] * row_bound(of_point, far[l]);
+    }
+  }
+}
+
+// ---- listed bonds ----
+
+/// Eight bonds of a point, from bond n on.
+template <int D>
+struct ListedBonds8 {
+  Bonds<D> bonds;
+  Lanes weight, inverse_length;
+};
+
+template <int D>
+RIVEN_INLINE ListedBonds8<D> gather(const PmbList& list, const PmbPoint& own, std::size_t n) {
+  alignas(64) double x[D][kLanes], u[D][kLanes], weight[kLanes];
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    const PmbPoint& far = list.points[list.neighbour[n + l]];
+    RIVEN_UNROLL
+    for (int d = 0; d < D; ++d) {
+      x[d][l] = far.x[static_cast<std::size_t>(d)];
+      u[d][l] = far.u[static_cast<std::size_t>(d)];
+    }
+    weight[l] = far.weight;
+  }
+  ListedBonds8<D> at;
+  RIVEN_UNROLL
+  for (int d = 0; d < D; ++d) {
+    at.bonds.eta[d] = load(u[d]) - own.u[static_cast<std::size_t>(d)];
+    at.bonds.y[d] = (load(x[d]) - own.x[static_cast<std::size_t>(d)]) + at.bonds.eta[d];
+  }
+  at.weight = load(weight);
+  at.inverse_length = load(list.inverse_length.data() + n);
+  return at;
+}
+
+/// Calls visit(eight bonds, their masks' byte) for the bonds of a point.
+template <int D, class Visit>
+RIVEN_INLINE void for_each_eight(const PmbList& list, std::size_t point, const Visit& visit) {
+  const PmbPoint& own = list.points[point];
+  std::uint8_t* masks = list.masks + list.begin[point] / 8 + point;
+  for (std::size_t n = list.begin[point]; n < list.begin[point + 1]; n += kLanes, ++masks)
+    if (*masks != 0) visit(gather<D>(list, own, n), *masks);
+}
+
+template <int D>
+double listed_force(PmbList& list, std::size_t begin, std::size_t end, bool breaks) {
+  double energy = 0;
+  for (std::size_t point = begin; point < end; ++point) {
+    Lanes force[D];
+    RIVEN_UNROLL
+    for (Lanes& component : force) component = broadcast(0);
+    const double scale = list.stiffness * list.points[point].weight;
+    for_each_eight<D>(list, point, [&](const ListedBonds8<D>& at, std::uint8_t& bits) RIVEN_INLINED {
+      const Lanes r2 = dot(at.bonds.y, at.bonds.y);
+      const Lanes squared_stretch = r2 * at.inverse_length * at.inverse_length;
+      Mask exists = expand(bits);
+      const std::uint8_t broken = bits_of(greater(squared_stretch, list.limit2) & exists);
+      if (broken != 0 && breaks) {
+        const Lanes taken = squared_stretch_times_length(at.bonds, at.inverse_length) * at.weight;
+        energy += 0.25 * scale * sum(select(expand(broken), taken));
+        bits = static_cast<std::uint8_t>(bits & ~broken);
+        exists = expand(bits);
+      }
+      const Lanes pull = select(exists, (at.inverse_length - inverse_root(r2)) * at.weight);
+      RIVEN_UNROLL
+      for (int d = 0; d < D; ++d) force[d] += select(exists, pull * at.bonds.y[d]);
+    });
+    RIVEN_UNROLL
+    for (int d = 0; d < D; ++d) list.out[static_cast<std::size_t>(d)][point] = scale * sum(force[d]);
+  }
+  return energy;
+}
+
+template <int D>
+double listed_energy(const PmbList& list, std::size_t begin, std::size_t end) {
+  double energy = 0;
+  for (std::size_t point = begin; point < end; ++point) {
+    Lanes of_point = broadcast(0);
+    for_each_eight<D>(list, point, [&](const ListedBonds8<D>& at, std::uint8_t bits) RIVEN_INLINED {
+      const Lanes w = squared_stretch_times_length(at.bonds, at.inverse_length) * at.weight;
+      of_point += select(expand(bits), w);
+    });
+    energy += list.points[point].weight * sum(of_point);
+  }
+  return 0.25 * list.stiffness * energy;
+}
+
+template <int D>
+void listed_bound(const PmbList& list, std::size_t begin, std::size_t end) {
+  for (std::size_t point = begin; point < end; ++point) {
+    RowBound<D> rows;
+    for_each_eight<D>(list, point, [&](const ListedBonds8<D>& at, std::uint8_t bits) RIVEN_INLINED {
+      rows.add(at.bonds.y, at.inverse_length, expand(bits), at.weight);
+    });
+    double own[D][D];
+    RIVEN_UNROLL
+    for (int a = 0; a < D; ++a) RIVEN_UNROLL
+    for (int b = a; b < D; ++b) own[a][b] = sum(rows.own[a][b]);
+    RIVEN_UNROLL
+    for (int d = 0; d < D; ++d)
+      list.out[static_cast<std::size_t>(d)][point] =
+          list.stiffness * list.points[point].weight * row_bound(own, sum(rows.far));
+  }
+}
+
+template <int D>
+PmbKernels kernels_of() {
+  return {lattice_force<D>, listed_force<D>,  lattice_energy<D>,
+          listed_energy<D>, lattice_bound<D>, listed_bound<D>};
+}
+
+inline PmbKernels pmb_kernels(int dimension) {
+  return dimension == 1 ? kernels_of<1>() : dimension == 2 ? kernels_of<2>() : kernels_of<3>();
+}
