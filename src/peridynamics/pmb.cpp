@@ -51,7 +51,8 @@ double Pmb::full_volume(std::size_t point) const {
 }
 
 /// Sum of length times volume over a whole family (m^4): that of the stencil, or the median of the complete
-/// families of a list, which is the same for points of a lattice whatever its defects.
+/// families of a list, which is the same for points of a lattice whatever its defects. Where a body is too
+/// thin for a complete family, that of its largest.
 double Pmb::family_moment() const {
   if (const LatticeBonds* on = body().on_lattice()) {
     const double cell = std::pow(body().spacing, body().dimension) * body().thickness;
@@ -59,16 +60,19 @@ double Pmb::family_moment() const {
     for (const double length : on->stencil.length) moment += length * cell;
     return moment;
   }
-  std::vector<double> moments;
+  std::vector<double> moments;  // of the complete families
+  double largest = 0;
   for (const std::size_t i : body().points) {
-    if (!body().complete[i]) continue;
-    double& moment = moments.emplace_back(0);
+    double moment = 0;
     const Point x = body().position(i);
     body().for_each_neighbour(i, [&](std::size_t j) {
       const Point y = body().position(j);
       moment += std::hypot(y[0] - x[0], y[1] - x[1], y[2] - x[2]) * full_volume(j);
     });
+    largest = std::max(largest, moment);
+    if (body().complete[i]) moments.push_back(moment);
   }
+  if (moments.empty()) return largest;
   const auto middle = moments.begin() + static_cast<std::ptrdiff_t>(moments.size() / 2);
   std::nth_element(moments.begin(), middle, moments.end());
   return *middle;
