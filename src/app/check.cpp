@@ -6,9 +6,11 @@
 #include <cmath>
 
 #include "app/commands.hpp"
+#include "base/machine.hpp"
 #include "input/case_reader.hpp"
 #include "input/case_writer.hpp"
 #include "input/schema.hpp"
+#include "simulation/estimate.hpp"
 #include "simulation/preflight.hpp"
 #include "simulation/probes.hpp"
 #include "solver/velocity_verlet.hpp"
@@ -79,11 +81,6 @@ void print_model(const Simulation& simulation) {
   print_sets(simulation);
 }
 
-std::string duration(double seconds) {
-  if (seconds < 90) return fmt::format("{:.1g} s", seconds);
-  return seconds < 5400 ? fmt::format("{:.0f} min", seconds / 60) : fmt::format("{:.1f} h", seconds / 3600);
-}
-
 void print_cost(const Simulation& simulation) {
   if (simulation.parameter == Parameter::time) {
     const std::vector<double> rest(simulation.model->dofs(), 0.0);
@@ -91,9 +88,11 @@ void print_cost(const Simulation& simulation) {
                stable_step(*simulation.model, *simulation.constraints, rest));
   }
   const TimeEstimate time = time_estimate(simulation);
-  fmt::print("# time: about {} on {} threads ({:.3g} force evaluations of {:.2g} ms)\n",
-             duration(time.total_s()), omp_get_max_threads(), time.evaluations, 1e3 * time.evaluation_s);
-  fmt::print("# memory: about {:.0f} MB\n", 1e-6 * memory_estimate(simulation.input.geometry));
+  fmt::print("# time: about {} on {} ({:.3g} force evaluations of {:.2g} ms)\n",
+             duration_text(time.total_s()), count_text(omp_get_max_threads(), "thread"), time.evaluations,
+             1e3 * time.evaluation_s);
+  fmt::print("# memory: about {}\n", bytes_text(memory_estimate(simulation.input)));
+  fmt::print("# disk: up to {}\n", bytes_text(output_estimate(simulation)));
 }
 
 /// The short variant is a run of its own and may be wrong where the full one is right.
@@ -110,10 +109,11 @@ void check_short(const Case& input, std::vector<std::string> set) {
 int check(const Options& options) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
   Case input = read_case(find_case(options.target), options.set);
-  if (!options.set.empty()) drop_unreached_expectations(input);
+  const std::size_t unreached = options.set.empty() ? 0 : drop_unreached_expectations(input);
   const Simulation simulation = build_simulation(input);
   const Probes probes(simulation);
   check_before_run(simulation, probes);
+  check_disk(simulation, available_disk(default_output(input.file)));
   if (input.short_run) check_short(input, options.set);
   fmt::print("{}\n", resolved_case(input));
   print_tables(input);
@@ -121,6 +121,7 @@ int check(const Options& options) {
   print_cost(simulation);
   for (const HistoryColumn& column : probes.columns())
     fmt::print("# metric {}{}\n", column.name, column.unit.empty() ? "" : " [" + column.unit + "]");
+  if (unreached > 0) fmt::print("# {}\n", left_out(unreached));
   for (const std::string& warning : warnings(simulation)) fmt::print("# warning: {}\n", warning);
   return kDone;
 }

@@ -49,6 +49,8 @@ int schema(bool markdown);
 
 /// Folder of the shipped cases.
 std::filesystem::path cases_folder();
+/// Whether a file is one of them.
+bool is_shipped(const std::filesystem::path& file);
 /// A case by its file, or a shipped one by topic/name. Throws InputError with what is near.
 std::filesystem::path find_case(const std::string& target);
 /// results/<topic>/<name> for shipped cases, results/<file stem> otherwise.

@@ -156,6 +156,7 @@ class CommandLine {
     CLI::App& command = add("verify", "Run shipped cases and hold them against their references",
                             [this] { return verify(options_, brief_); });
     add_case(command, "Topic or case (default: all)");
+    command.add_flag("--force", options_.force, "Replace results of riven run too");
     command.add_flag("--short", brief_, "Run the short variants of cases that have one");
   }
 

@@ -1,4 +1,7 @@
+#include <fmt/format.h>
 #include <omp.h>
+
+#include <cstdio>
 
 #include "app/commands.hpp"
 #include "input/case_reader.hpp"
@@ -11,7 +14,8 @@ int run(const Options& options) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
   const auto file = find_case(options.target);
   Case input = read_case(file, options.set);
-  if (!options.set.empty()) drop_unreached_expectations(input);
+  const std::size_t unreached = options.set.empty() ? 0 : drop_unreached_expectations(input);
+  if (unreached > 0) fmt::print(stderr, "{}\n", left_out(unreached));
   const Summary summary =
       run_case(input, {.folder = options.output.empty() ? default_output(file) : options.output,
                        .force = options.force,

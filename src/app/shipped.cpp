@@ -27,13 +27,13 @@ std::vector<fs::path> shipped_files() {
   return files;
 }
 
+}  // namespace
+
 bool is_shipped(const fs::path& file) {
   const fs::path relative =
       fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(cases_folder()));
   return !relative.empty() && *relative.begin() != "..";
 }
-
-}  // namespace
 
 fs::path cases_folder() {
   const char* home = std::getenv("RIVEN_HOME");

@@ -7,6 +7,7 @@
 #include "app/commands.hpp"
 #include "base/error.hpp"
 #include "input/case_reader.hpp"
+#include "output/atomic_file.hpp"
 #include "simulation/preflight.hpp"
 #include "simulation/run.hpp"
 #include "simulation/verify.hpp"
@@ -51,13 +52,30 @@ Variant make_variant(const fs::path& file, const Options& options, bool brief) {
   return variant;
 }
 
-void print_verdicts(const fs::path& file, const Variant& variant, const std::vector<Verdict>& verdicts) {
-  fmt::print("{}{}: {}\n{}", case_name(file), variant.brief ? " (short)" : "", variant.input.title,
-             verdicts.empty() ? std::string("  no expectations\n") : table(verdicts));
-  if (variant.unreached > 0)
-    fmt::print("  not compared: {} at states that this run does not reach\n", variant.unreached);
-  fmt::print("\n");
+constexpr const char* kVerification = "verification.txt";
+
+/// Prints what a verification found and leaves it in the result, which a later verification may then replace.
+void tell(const fs::path& folder, const std::string& text) {
+  fmt::print("{}\n", text);
   std::fflush(stdout);  // whoever reads a pipe waits for each case, not for all
+  AtomicFile file(folder / kVerification);
+  file.stream() << text;
+  file.commit();
+}
+
+std::string verdicts_text(const fs::path& file, const Variant& variant,
+                          const std::vector<Verdict>& verdicts) {
+  std::string text =
+      fmt::format("{}{}: {}\n{}", case_name(file), variant.brief ? " (short)" : "", variant.input.title,
+                  verdicts.empty() ? "  no expectations\n" : table(verdicts));
+  if (variant.unreached > 0)
+    text += fmt::format("  not compared: {} at states that this run does not reach\n", variant.unreached);
+  return text;
+}
+
+/// Results of shipped cases can be had again, and so can those of a verification; others took a user's time.
+bool may_replace(const fs::path& file, const fs::path& folder, const Options& options) {
+  return options.force || is_shipped(file) || fs::exists(folder / kVerification);
 }
 
 /// Runs one case and prints its table. Returns its exit code.
@@ -65,17 +83,19 @@ int verify_case(const fs::path& file, const Options& options, bool brief) {
   const Variant variant = make_variant(file, options, brief);
   const fs::path folder = default_output(file);
   const Summary summary =
-      run_case(variant.input, {.folder = folder, .force = true, .case_name = case_name(file)});
+      run_case(variant.input,
+               {.folder = folder, .force = may_replace(file, folder, options), .case_name = case_name(file)});
   if (summary.status == RunStatus::interrupted) return kInterrupted;
   if (summary.status == RunStatus::failed) {
-    fmt::print("{}: the run failed; see {}\n\n", case_name(file), (folder / "riven.log").string());
+    tell(folder,
+         fmt::format("{}: the run failed; see {}\n", case_name(file), (folder / "riven.log").string()));
     return kFailed;
   }
   std::vector<Verdict> verdicts = judge(variant.input, variant.input.expects, folder);
   // With overrides the expectations of the full case say nothing that could decide.
   if (!options.set.empty())
     for (Verdict& verdict : verdicts) verdict.decides = false;
-  print_verdicts(file, variant, verdicts);
+  tell(folder, verdicts_text(file, variant, verdicts));
   const bool met =
       std::all_of(verdicts.begin(), verdicts.end(), [](const Verdict& v) { return v.met || !v.decides; });
   return met ? kDone : kMissed;

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 
 #include "base/error.hpp"
 #include "base/nearest_name.hpp"
@@ -59,9 +62,16 @@ std::vector<std::string> split(const std::string& line, const Location& place) {
   }
 }
 
-bool names(std::string_view column, std::string_view name) {
-  return column == name ||
-         (column.starts_with(name) && column.substr(name.size()).starts_with(" [") && column.ends_with(']'));
+/// A column's name without its unit: "x" of "x [mm]" and "x[mm]".
+std::string_view bare(std::string_view column) {
+  return column.ends_with(']') ? trim(column.substr(0, column.rfind('['))) : column;
+}
+
+/// The text of a file with LF as its only line end.
+std::string read_lines(std::istream& in) {
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
+  return text;
 }
 
 }  // namespace
@@ -69,9 +79,10 @@ bool names(std::string_view column, std::string_view name) {
 CsvTable CsvTable::read(const std::filesystem::path& path, bool drop_torn_line) {
   CsvTable table;
   table.file_ = path.string();
-  std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path))
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path))
     throw InputError(Location{table.file_}, "there is no such file");
+  std::istringstream in(read_lines(file));
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
     if (drop_torn_line && in.eof()) break;
@@ -83,6 +94,10 @@ CsvTable CsvTable::read(const std::filesystem::path& path, bool drop_torn_line) 
     if (table.columns_.empty()) {
       table.columns_ = std::move(cells);
       table.header_line_ = number;
+      if (table.columns_.size() == 1 && table.columns_[0].find(';') != std::string::npos)
+        throw InputError(place,
+                         "found cells separated by semicolons; expected commas between cells, and "
+                         "points in numbers");
       continue;
     }
     if (cells.size() != table.columns_.size()) {
@@ -98,16 +113,23 @@ CsvTable CsvTable::read(const std::filesystem::path& path, bool drop_torn_line) 
 }
 
 std::optional<std::size_t> CsvTable::find(std::string_view name) const {
+  std::vector<std::size_t> exact, found;
   for (std::size_t i = 0; i < columns_.size(); ++i) {
-    if (names(columns_[i], name)) return i;
+    if (columns_[i] == name) exact.push_back(i);
+    if (bare(columns_[i]) == name) found.push_back(i);
   }
-  return std::nullopt;
+  if (!exact.empty()) found = exact;
+  if (found.size() > 1)
+    throw InputError(Location{file_, header_line_},
+                     fmt::format("found the columns \"{}\" and \"{}\"; expected one of that name",
+                                 columns_[found[0]], columns_[found[1]]));
+  return found.empty() ? std::nullopt : std::make_optional(found[0]);
 }
 
 std::size_t CsvTable::column(std::string_view name) const {
   if (const auto found = find(name)) return *found;
   std::vector<std::string> known;
-  for (const std::string& column : columns_) known.push_back(column.substr(0, column.find(" [")));
+  for (const std::string& column : columns_) known.emplace_back(bare(column));
   throw InputError(Location{file_, header_line_},
                    fmt::format("expected a column \"{}\"; there are: {}{}", name, fmt::join(columns_, ", "),
                                did_you_mean(name, known)));

@@ -9,7 +9,7 @@
 namespace riven {
 
 /// A CSV file: a row of column names, then rows of cells. Lines that start with `#` and blank lines are
-/// skipped; line ends may be LF or CRLF, cells may be quoted ("a, b", doubled quotes inside), text and
+/// skipped; line ends may be LF, CRLF or CR, cells may be quoted ("a, b", doubled quotes inside), text and
 /// numbers may mix.
 class CsvTable {
  public:
@@ -27,7 +27,7 @@ class CsvTable {
   /// The same of a row.
   [[nodiscard]] int line(std::size_t row) const { return lines_[row]; }
 
-  /// Index of the column called `name` or `name [unit]`.
+  /// Index of the column called `name`, `name [unit]` or `name[unit]`. Throws InputError when there are two.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
   /// The same; throws InputError that lists the columns there are.
   [[nodiscard]] std::size_t column(std::string_view name) const;

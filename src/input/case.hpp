@@ -108,7 +108,8 @@ struct SolverInput {   // [solver]
   double tolerance = 1e-5;      // free force / reaction
   int max_iterations = 20000;   // per load step; then the step is cut
   // Verlet
-  double until = 0;            // s
+  double until = 0;  // s
+  Location until_at;
   std::optional<double> step;  // s; default: from the stable step
   double safety = 0.8;
   Location at;

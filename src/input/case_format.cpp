@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <set>
 
@@ -197,7 +198,11 @@ Format describe(MaterialInput& m, const Case& c) {
            Key{"c20", modulus(m.c20, any_number), "Second parameter."}.applies(law({"yeoh"})).otherwise("0"),
            Key{"c30", modulus(m.c30, any_number), "Third parameter."}.applies(law({"yeoh"})).otherwise("0")},
       .groups = {{{"youngs_modulus", "shear_modulus", "c10"}, true, law({"neo-hookean"})}},
-      .finish = [&m](const Check& check) {
+      .finish = [&m, &c](const Check& check) {
+        if (c.model.kind == "membrane-bond" && m.law != "neo-hookean")
+          check.fail("law", fmt::format("found \"{}\" with model.kind = \"membrane-bond\", whose bonds are "
+                                        "neo-Hookean; expected \"neo-hookean\"",
+                                        m.law));
         const double shear = 2 * (m.c10.value_or(1) + m.c01.value_or(0));
         if (shear <= 0)
           check.fail("c10", "gives a shear modulus of zero or less; expected c10 + c01 above 0");
@@ -239,6 +244,15 @@ void check_stretch(const std::vector<double>& stretch, const Check& check) {
   }
 }
 
+// Counts beyond these are slips of a unit or a digit.
+constexpr double kMostStates = 1e6;
+constexpr double kMostSteps = 1e9;
+
+void check_count(const char* key, double count, const char* what, double most, const Check& check) {
+  if (!(count <= most))
+    check.fail(key, fmt::format("gives {:.3g} {}; expected {:g} at most", count, what, most));
+}
+
 Format describe(SolverInput& s) {
   const When relaxed{"method", &s.method, {relaxation}};
   const When in_time{"method", &s.method, {verlet}};
@@ -272,27 +286,44 @@ Format describe(SolverInput& s) {
                    "Part of the stable step that is used."}
                    .applies(in_time)
                    .otherwise("0.8")},
-      .finish = [&s](const Check& check) { check_stretch(s.stretch, check); }};
+      .finish = [&s](const Check& check) {
+        check_stretch(s.stretch, check);
+        if (s.stretch.empty()) {
+          s.until_at = check.at("until");
+          if (s.step) check_count("step", s.until / *s.step, "time steps", kMostSteps, check);
+          return;
+        }
+        check_count("increment", std::abs(s.stretch.back() - 1) / s.increment, "load steps", kMostStates,
+                    check);
+      }};
 }
 
 // ---- what comes out ----
 
 Format describe(OutputInput& output, const Case& c) {
   const auto time = [](std::optional<double>& to) { return Quantity{&to, dimension::time, positive}; };
-  return {.doc = "What is written. Dynamic relaxation writes at each stretch.",
-          .at = &output.at,
-          .keys = {
-              Key{"every", time(output.every), "Time between output states; start and end only unless given."}
-                  .applies(method(c, verlet)),
-              Key{"history_every", time(output.history_every),
-                  "Time between rows of the history; `every` unless given."}
-                  .applies(method(c, verlet)),
-              Key{"fields",
-                  Texts{&output.fields,
-                        {"displacement", "damage", "strain_energy_density", "nominal_stress",
-                         "weight_minimum", "surface_correction"}},
-                  "Fields of the output states; weight_minimum: membrane, surface_correction: membrane-bond."}
-                  .otherwise(R"(["displacement", "damage", "strain_energy_density", "nominal_stress"])")}};
+  return {
+      .doc = "What is written. Dynamic relaxation writes at each stretch.",
+      .at = &output.at,
+      .keys =
+          {Key{"every", time(output.every), "Time between output states; start and end only unless given."}
+               .applies(method(c, verlet)),
+           Key{"history_every", time(output.history_every),
+               "Time between rows of the history; `every` unless given."}
+               .applies(method(c, verlet)),
+           Key{"fields",
+               Texts{&output.fields,
+                     {"displacement", "damage", "strain_energy_density", "nominal_stress", "weight_minimum",
+                      "surface_correction"}},
+               "Fields of the output states; weight_minimum: membrane, surface_correction: membrane-bond."}
+               .otherwise(R"(["displacement", "damage", "strain_energy_density", "nominal_stress"])")},
+      .finish = [&output, &c](const Check& check) {
+        const double until = c.solver.until;
+        if (output.every) check_count("every", until / *output.every, "output states", kMostStates, check);
+        if (output.history_every)
+          check_count("history_every", until / *output.history_every, "rows of the history", kMostStates,
+                      check);
+      }};
 }
 
 Format describe(ProbeInput& p, const Case& c) {

@@ -10,7 +10,7 @@
 namespace riven {
 
 /// Reads and checks a case file. `overrides`: "path.to.key=value" as for --set; entries of arrays by their
-/// number from 0, as in "load.0.displacement". Throws InputError for the first thing that is wrong.
+/// number from 1, as in "load.1.displacement". Throws InputError for the first thing that is wrong.
 Case read_case(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
 /// The same from text; `file` names it in messages.

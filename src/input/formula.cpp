@@ -149,7 +149,8 @@ void check_dimension(const FormulaText& formula, const Expression& plain, const 
 }  // namespace
 
 void Origin::fail(const std::string& message) const {
-  throw InputError(at, key.empty() ? message : key + ": " + message);
+  // The place of an override names the key already.
+  throw InputError(at, key.empty() || at.file.ends_with(" " + key) ? message : key + ": " + message);
 }
 
 void Origin::fail(std::string_view text, std::size_t offset, const std::string& message) const {

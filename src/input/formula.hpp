@@ -14,7 +14,7 @@ namespace riven {
 
 /// Where a value of a case file stands: messages name its key and its place.
 struct Origin {
-  std::string key;  // "load.0.displacement"
+  std::string key;  // "load.1.displacement", entries counted from 1
   Location at;
   int text_column = 0;  // column of a string's first character; 0 = unknown
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <string_view>
@@ -89,6 +91,31 @@ PointList read_points(const std::filesystem::path& file, double thickness) {
   }
   read_volumes(csv, thickness, points);
   return points;
+}
+
+void check_volumes(const PointList& points, double thickness) {
+  constexpr double kImpossible = 4;  // the fewest points reach 1.8; units differ by 100 and more
+  std::array<double, 3> extent{};
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(points.dimension); ++axis) {
+    const auto [low, high] =
+        std::minmax_element(points.position.begin(), points.position.end(),
+                            [&](const Point& a, const Point& b) { return a[axis] < b[axis]; });
+    extent[axis] = (*high)[axis] - (*low)[axis];
+  }
+  // Half a cell stands out on each side.
+  const auto count = static_cast<double>(points.position.size());
+  const double cell =
+      *std::max_element(extent.begin(), extent.end()) / std::pow(count, 1.0 / points.dimension);
+  double room = points.dimension == 2 ? thickness : 1;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(points.dimension); ++axis)
+    room *= extent[axis] + cell;
+  const double sum = std::accumulate(points.volume.begin(), points.volume.end(), 0.0);
+  if (sum > kImpossible * room)
+    throw InputError(
+        Location{points.file},
+        fmt::format("the volumes sum to {:.3g} m^3, and the points spread over {:.3g} m^3; is the unit "
+                    "of the volumes right?",
+                    sum, room));
 }
 
 void check_inside(const PointList& points, const Box& box, double spacing) {

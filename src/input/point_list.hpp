@@ -26,7 +26,9 @@ struct PointList {
 /// ignored. Throws InputError (file, line) where a column, a unit or a number is wrong.
 PointList read_points(const std::filesystem::path& file, double thickness);
 
-/// Throws InputError (file, line) for a point outside of the box, and for two points at one place.
+/// Throw InputError (file, line): for volumes that the points' extent cannot hold (a wrong unit, mostly), for
+/// a point outside of the box, for two points at one place.
+void check_volumes(const PointList& points, double thickness);
 void check_inside(const PointList& points, const Box& box, double spacing);
 void check_apart(const PointList& points, double spacing);
 

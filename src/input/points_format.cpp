@@ -78,6 +78,7 @@ void read(GeometryInput& geometry, const std::optional<double>& thickness, const
         read_points(c.file.parent_path() / points.file, thickness.value_or(1)));
   });
   check_thickness(thickness, points.list->dimension, check);
+  in_file([&] { check_volumes(*points.list, thickness.value_or(1)); });
   geometry.dimension = points.list->dimension;
   geometry.thickness = thickness.value_or(1);
   geometry.spacing = points.list->spacing(geometry.thickness);

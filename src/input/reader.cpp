@@ -162,7 +162,7 @@ Symbols Reader::symbols(std::vector<std::string> variables) const {
 }
 
 Origin Reader::entry_origin(const Origin& list, std::size_t index, const toml::node& node) const {
-  return source_.origin(join(list.key, std::to_string(index)), node);
+  return source_.origin(join(list.key, std::to_string(index + 1)), node);
 }
 
 }  // namespace riven

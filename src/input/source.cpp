@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <optional>
 #include <utility>
 
 namespace riven {
@@ -25,12 +26,13 @@ std::string trimmed(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-// The entry of an array that a path names by its number.
-toml::node* entry(toml::array& array, const std::string& number) {
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), index);
-  if (error != std::errc{} || end != number.data() + number.size() || index >= array.size()) return nullptr;
-  return array.get(index);
+// The index of the entry that a path names by its number, from 1.
+std::optional<std::size_t> index_of(const toml::array& array, const std::string& number) {
+  std::size_t count = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), count);
+  if (error != std::errc{} || end != number.data() + number.size() || count < 1 || count > array.size())
+    return std::nullopt;
+  return count - 1;
 }
 
 bool begins_with_path(const std::string& path, const std::string& start) {
@@ -93,12 +95,15 @@ void Source::apply(const std::string& override_text) {
     const bool last = i + 1 == names.size();
     if (names[i].empty()) origin.fail("has an empty name; expected path.to.key=value");
     if (toml::array* array = at->as_array()) {
-      toml::node* next = entry(*array, names[i]);
-      if (next == nullptr)
-        origin.fail(fmt::format("{} has {} entries; expected a number from 0 to {}, found \"{}\"", walked,
-                                array->size(), static_cast<long>(array->size()) - 1, names[i]));
-      if (last) put(*array, static_cast<std::size_t>(std::stoul(names[i])), value);
-      at = next;
+      const auto index = index_of(*array, names[i]);
+      if (!index)
+        origin.fail(array->empty()
+                        ? fmt::format("{} has no entries", walked)
+                        : fmt::format("{} has {} {}; expected a number from 1 to {}, found \"{}\"", walked,
+                                      array->size(), array->size() == 1 ? "entry" : "entries", array->size(),
+                                      names[i]));
+      if (last) put(*array, *index, value);
+      at = array->get(*index);
     } else if (toml::table* table = at->as_table()) {
       if (last)
         put(*table, names[i], value);
@@ -124,9 +129,11 @@ Origin Source::origin(const std::string& path, const toml::key& key) const {
 }
 
 Origin Source::origin(const std::string& path, const toml::source_region& region) const {
-  for (const std::string& each : overridden_)
-    if (begins_with_path(path, each) || (region.begin.line == 0 && begins_with_path(each, path)))
+  for (const std::string& each : overridden_) {
+    if (begins_with_path(path, each)) return {path, {fmt::format("--set {}", path)}};
+    if (region.begin.line == 0 && begins_with_path(each, path))
       return {path, {fmt::format("--set {}", each)}};
+  }
   return {path, {file_, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)}};
 }
 

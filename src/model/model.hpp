@@ -73,6 +73,12 @@ class Model {
   [[nodiscard]] virtual std::vector<Point> displacements(std::span<const double> u) const = 0;
   [[nodiscard]] virtual std::vector<ModelField> fields(std::span<const double> u) = 0;
 
+  /// Undeformed position (m) of what an entry of a state moves: to name a place in messages.
+  [[nodiscard]] virtual Point place(std::size_t entry) const = 0;
+
+  /// What might carry a body past a load that it does not stand, for messages.
+  [[nodiscard]] virtual std::string remedies() const { return "a finer lattice"; }
+
   /// What follows from the case, a line each: constants of the material, kinds of points.
   [[nodiscard]] virtual std::vector<std::string> describe() const = 0;
   /// Points, and directed bonds that one force evaluation visits.

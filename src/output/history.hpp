@@ -51,6 +51,10 @@ class History {
   [[nodiscard]] std::vector<double> column(std::string_view name) const {
     return table_.numbers(table_.column(name));
   }
+  /// Its name with unit, as in the file.
+  [[nodiscard]] const std::string& column_name(std::string_view name) const {
+    return table_.columns()[table_.column(name)];
+  }
   /// Column names with units, as in the file.
   [[nodiscard]] const std::vector<std::string>& columns() const { return table_.columns(); }
 

@@ -42,6 +42,9 @@ class Membrane final : public PointModel {
   void stiffness_bound(std::span<const double> u, std::span<double> bound) override;
   [[nodiscard]] std::optional<Breakdown> inspect(std::span<const double> u) override;
   [[nodiscard]] std::vector<ModelField> fields(std::span<const double> u) override;
+  [[nodiscard]] std::string remedies() const override {
+    return "a larger model.stabilisation or a finer lattice";
+  }
   [[nodiscard]] std::vector<std::string> describe() const override;
   [[nodiscard]] std::size_t bytes() const override;
 

@@ -128,6 +128,12 @@ std::vector<Point> PointModel::positions() const {
   return positions;
 }
 
+Point PointModel::place(std::size_t entry) const {
+  if (entry < inclusion_dof(0)) return body_.position(entry % body_.size());
+  const Inclusion& inclusion = inclusions_[(entry - inclusion_dof(0)) / 3];
+  return {inclusion.center.x(), inclusion.center.y(), 0};
+}
+
 std::vector<Point> PointModel::displacements(std::span<const double> u) const {
   std::vector<Point> displacements;
   for (const std::size_t i : body_.points) {

@@ -23,6 +23,7 @@ class PointModel : public Model {
             const Point& shift) const override;
   [[nodiscard]] std::vector<Point> positions() const override;
   [[nodiscard]] std::vector<Point> displacements(std::span<const double> u) const override;
+  [[nodiscard]] Point place(std::size_t entry) const override;
   [[nodiscard]] std::size_t points() const override { return body_.points.size(); }
   [[nodiscard]] std::size_t bonds() const override { return directed_bonds_; }
 

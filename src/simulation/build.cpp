@@ -4,13 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/machine.hpp"
 #include "body/lattice_body.hpp"
 #include "body/listed_body.hpp"
 #include "load/mirror.hpp"
 #include "peridynamics/bond_membrane.hpp"
 #include "peridynamics/membrane.hpp"
 #include "peridynamics/pmb.hpp"
-#include "simulation/preflight.hpp"
+#include "simulation/estimate.hpp"
 #include "simulation/simulation.hpp"
 
 namespace riven {
@@ -279,7 +280,7 @@ class LoadBuilder {
       auto& given = faces_[face]->displacement[axis];
       if (given)
         throw InputError(
-            on.at, fmt::format("load: component {} of the edge \"{}\" is displaced twice", axis, on.text));
+            on.at, fmt::format("load: the edge \"{}\" is displaced twice along {}", on.text, "xyz"[axis]));
       given = make_function(*value, simulation_.parameter);
     }
   }
@@ -300,8 +301,8 @@ class LoadBuilder {
     throw InputError(
         face_at_[face],
         fmt::format("load: the edge \"{}\" is displaced along itself only; expected its normal component too "
-                    "(component {} of displacement), or a set of points instead of the edge",
-                    kFaceNames[face], face / 2));
+                    "(entry {} of displacement), or a set of points instead of the edge",
+                    kFaceNames[face], face / 2 + 1));
   }
 
   void displace_set(const LoadInput& load, const Named& on) {
@@ -366,7 +367,7 @@ std::size_t Simulation::entry(std::size_t axis, std::size_t number) const {
 }
 
 Simulation build_simulation(const Case& input) {
-  check_memory(input.geometry);
+  check_memory(input, available_memory());
   Simulation simulation;
   simulation.input = input;
   simulation.parameter = input.solver.method == "verlet" ? Parameter::time : Parameter::stretch;

@@ -1,16 +1,13 @@
 #include "simulation/preflight.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <numbers>
 
 #include "base/nearest_name.hpp"
-#include "body/stencil.hpp"
 #include "solver/velocity_verlet.hpp"
 #include "verification/reference_points.hpp"
 
@@ -98,13 +95,19 @@ void check_metric(const ExpectInput& expect, const std::vector<HistoryColumn>& c
 }
 
 void check_step(const Simulation& simulation) {
+  constexpr double kMostSteps = 1e9;
   const SolverInput& solver = simulation.input.solver;
-  if (simulation.parameter != Parameter::time || !solver.step) return;
+  if (simulation.parameter != Parameter::time) return;
   std::vector<double> start(simulation.model->dofs(), 0.0);
   simulation.constraints->set_parameter(0);
   simulation.constraints->apply(start);
   const double limit = stable_step(*simulation.model, *simulation.constraints, start);
-  if (*solver.step > limit)
+  if (!solver.step && solver.until > kMostSteps * solver.safety * limit)
+    throw InputError(
+        solver.until_at,
+        fmt::format("solver.until: {:g} s take {:.3g} time steps of {:.4g} s; expected {:g} at most",
+                    solver.until, solver.until / (solver.safety * limit), solver.safety * limit, kMostSteps));
+  if (solver.step && *solver.step > limit)
     throw InputError(
         solver.at, fmt::format("solver.step: {:.4g} s is above the stable step, {:.4g} s; expected less, or "
                                "no step to have it chosen",
@@ -176,13 +179,6 @@ bool jumps_at_start(const Simulation& simulation) {
   return std::any_of(u.begin(), u.end(), [&](double value) { return !(std::abs(value) <= noticeable); });
 }
 
-double points_along(const Shape& shape, double spacing, std::size_t axis) {
-  if (const auto* box = std::get_if<Box>(&shape)) return std::ceil(2 * box->half_size[axis] / spacing - 1e-6);
-  const double radius =
-      std::holds_alternative<Disc>(shape) ? std::get<Disc>(shape).radius : std::get<Ball>(shape).radius;
-  return std::ceil(2 * radius / spacing - 1e-6);
-}
-
 /// Volume (m^3) of the body without its holes, to a few thousandths: by a grid of samples.
 double volume_without_holes(const GeometryInput& geometry, const std::vector<Shape>& holes) {
   const auto& box = std::get<Box>(geometry.shape);
@@ -222,23 +218,46 @@ void warn_of_volumes(const Simulation& simulation, std::vector<std::string>& lis
                     sum, 100 * std::abs(sum / whole - 1), sum > whole ? "more" : "less", whole));
 }
 
-/// Points that nothing holds.
-/// Families far larger or smaller than dx makes expect: volumes in another unit than the places, mostly.
-void warn_of_families(const Simulation& simulation, std::vector<std::string>& list) {
+/// Bonds of a point in the mean, and what the horizon in spacings makes expect. Far apart where the volumes,
+/// from which dx comes, are in another unit than the places.
+struct Families {
+  double mean = 0, expected = 0;
+};
+
+Families families(const Simulation& simulation) {
   const Body& body = *simulation.body;
   const double ratio = body.horizon / body.spacing;
   const double expected = body.dimension == 1   ? 2 * ratio
                           : body.dimension == 2 ? std::numbers::pi * ratio * ratio
                                                 : 4.0 / 3 * std::numbers::pi * ratio * ratio * ratio;
-  const double mean =
-      static_cast<double>(simulation.model->bonds()) / static_cast<double>(simulation.model->points());
-  if (mean < 0.5 * expected || mean > 2 * expected)
-    list.push_back(fmt::format(
-        "a point has {:.3g} bonds in the mean, and {:.3g} would be usual for a horizon of {:.3g} "
-        "spacings: dx = {:.4g} m, which the volumes give, does not fit the distances of the points",
-        mean, expected, ratio, body.spacing));
+  return {static_cast<double>(simulation.model->bonds()) / static_cast<double>(simulation.model->points()),
+          expected};
 }
 
+std::string families_text(const Simulation& simulation) {
+  const auto [mean, expected] = families(simulation);
+  const Body& body = *simulation.body;
+  return fmt::format(
+      "a point has {:.3g} bonds in the mean, and {:.3g} would be usual for a horizon of {:.3g} "
+      "spacings: dx = {:.4g} m, which the volumes give, does not fit the distances of the points",
+      mean, expected, body.horizon / body.spacing, body.spacing);
+}
+
+void warn_of_families(const Simulation& simulation, std::vector<std::string>& list) {
+  const auto [mean, expected] = families(simulation);
+  if (mean < 0.5 * expected || mean > 2 * expected) list.push_back(families_text(simulation));
+}
+
+/// With hardly a bond there is no body.
+void check_families(const Simulation& simulation) {
+  const auto [mean, expected] = families(simulation);
+  if (simulation.input.geometry.points && mean < 0.05 * expected)
+    throw InputError(
+        simulation.input.geometry.at,
+        fmt::format("geometry.points: {}; is the unit of the volumes right?", families_text(simulation)));
+}
+
+/// Points that nothing holds.
 void warn_of_lonely_points(const Simulation& simulation, std::vector<std::string>& list) {
   const Body& body = *simulation.body;
   std::vector<std::size_t> lonely;
@@ -251,15 +270,6 @@ void warn_of_lonely_points(const Simulation& simulation, std::vector<std::string
       fmt::format("the point in {}{} no bond: no other point within the horizon of {:.4g} m, or "
                   "defects between",
                   simulation.input.geometry.points->list->at(lonely.front()).text(), others, body.horizon));
-}
-
-double load_steps(const SolverInput& solver) {
-  double steps = 1, before = 1;  // one small step comes first
-  for (const double stretch : solver.stretch) {
-    steps += std::ceil(std::abs(stretch - before) / solver.increment - 1e-9);
-    before = stretch;
-  }
-  return steps;
 }
 
 }  // namespace
@@ -288,10 +298,18 @@ std::size_t drop_unreached_expectations(Case& input) {
   });
 }
 
+std::string left_out(std::size_t expectations) {
+  return expectations == 1
+             ? std::string("1 expectation is at a state that this run does not reach; it is left out")
+             : fmt::format("{} expectations are at states that this run does not reach; they are left out",
+                           expectations);
+}
+
 void check_before_run(const Simulation& simulation, const Probes& probes) {
   check_tables(simulation);  // before the loads are asked for a state
   check_step(simulation);
   check_fields(simulation);
+  check_families(simulation);
   const Case& input = simulation.input;
   for (const ExpectInput& expect : input.expects) {
     if (expect.state && !reaches(input, *expect.state)) fail_state(input, expect, *expect.state);
@@ -344,76 +362,6 @@ std::vector<std::string> warnings(const Simulation& simulation) {
           "an inclusion is nearer than a horizon to an edge: the strip between is too thin for this lattice");
   }
   return list;
-}
-
-double memory_estimate(const GeometryInput& geometry) {
-  // Planes of the model, vectors of the solver and what outputs copy, in doubles per lattice point and per
-  // direction.
-  constexpr double kPlanes = 30, kVectors = 12, kProgram = 30e6;
-  // Bytes of a listed bond at the peak, which is while the lists are made; measured 54 to 61.
-  constexpr double kListedBond = 56;
-  const double reach = geometry.horizon / geometry.spacing;
-  const auto dimension = static_cast<std::size_t>(geometry.dimension);
-  double points = 1, bonds = 1;
-  for (std::size_t axis = 0; axis < dimension; ++axis) {
-    points *= points_along(geometry.shape, geometry.spacing, axis) + 2 * reach;
-    bonds *= 2 * reach;
-  }
-  // The share of the cube of offsets that lies within the horizon: listed bonds are those, a lattice has a
-  // bit for each.
-  constexpr std::array<double, 3> kBall = {1, std::numbers::pi / 4, std::numbers::pi / 6};
-  const double per_point =
-      geometry.bonds == "listed" ? kListedBond * kBall[dimension - 1] * bonds : bonds / 8;
-  return kProgram + points * (8 * (kPlanes + kVectors * geometry.dimension) + per_point);
-}
-
-void check_memory(const GeometryInput& geometry) {
-  const double need = memory_estimate(geometry);
-  const double have =
-      static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
-  if (need > have)
-    throw InputError(
-        geometry.at,
-        fmt::format(
-            "geometry: so many points need about {:.3g} GB of memory, this machine has {:.3g} GB; expected "
-            "{}",
-            1e-9 * need, 1e-9 * have, geometry.points ? "fewer" : "a larger spacing"));
-}
-
-TimeEstimate time_estimate(const Simulation& simulation) {
-  using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds kMoment{200};
-  Model& model = *simulation.model;
-  const std::vector<double> rest(model.dofs(), 0.0);
-  std::vector<double> force(model.dofs());
-  const auto evaluate = [&] { static_cast<void>(model.internal_force(rest, force)); };
-  evaluate();  // the first one touches new memory
-  std::vector<double> seconds;
-  const auto begin = Clock::now();
-  do {
-    const auto start = Clock::now();
-    evaluate();
-    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
-  } while (Clock::now() - begin < kMoment);
-  TimeEstimate estimate;
-  // The median: threads that wait for a busy core now and then say nothing about the run.
-  const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
-  std::nth_element(seconds.begin(), middle, seconds.end());
-  estimate.evaluation_s = *middle;
-
-  const SolverInput& solver = simulation.input.solver;
-  if (simulation.parameter == Parameter::time) {
-    const double step = solver.safety * stable_step(model, *simulation.constraints, rest);
-    estimate.evaluations = std::ceil(solver.until / solver.step.value_or(step));
-  } else {
-    constexpr double kPerPointAlongSide = 3.5;  // waves must cross the body a few times in each load step
-    const auto& faces = simulation.body->faces;
-    double side = 0;  // m
-    for (std::size_t axis = 0; axis < static_cast<std::size_t>(simulation.body->dimension); ++axis)
-      side = std::max(side, faces[2 * axis + 1] - faces[2 * axis]);
-    estimate.evaluations = kPerPointAlongSide * side / simulation.body->spacing * load_steps(solver);
-  }
-  return estimate;
 }
 
 }  // namespace riven

@@ -16,6 +16,8 @@ bool reaches(const Case& input, double state);
 
 /// Takes out the expectations at states that a run with overrides no longer reaches. Returns how many.
 std::size_t drop_unreached_expectations(Case& input);
+/// A line for the user about them.
+std::string left_out(std::size_t expectations);
 
 /// Throws InputError for what would end a run late that can be told before it: a load whose table ends
 /// before the run does, a time step above the stable one, an expectation of a metric, unit, state or file
@@ -24,19 +26,5 @@ void check_before_run(const Simulation& simulation, const Probes& probes);
 
 /// What is allowed but rarely meant, for the user to read.
 std::vector<std::string> warnings(const Simulation& simulation);
-
-/// Bytes that a run of this case holds, known before anything is allocated.
-double memory_estimate(const GeometryInput& geometry);
-/// Throws InputError when that is more than this machine has.
-void check_memory(const GeometryInput& geometry);
-
-/// How long a run takes.
-struct TimeEstimate {
-  double evaluations = 0;   // of the force
-  double evaluation_s = 0;  // one of them, measured
-  [[nodiscard]] double total_s() const { return evaluations * evaluation_s; }
-};
-/// Measures the force for a moment. In statics the number of evaluations is a rule of thumb.
-TimeEstimate time_estimate(const Simulation& simulation);
 
 }  // namespace riven

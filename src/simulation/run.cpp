@@ -9,7 +9,9 @@
 #include <new>
 #include <sstream>
 
+#include "base/machine.hpp"
 #include "input/case_writer.hpp"
+#include "simulation/estimate.hpp"
 #include "simulation/interrupt.hpp"
 #include "simulation/preflight.hpp"
 #include "simulation/recorder.hpp"
@@ -127,6 +129,7 @@ Summary run_case(const Case& input, const RunOptions& options) {
   const Probes probes(simulation);
   check_before_run(simulation, probes);
   ResultFolder folder = ResultFolder::create(options.folder, options.force);
+  check_disk(simulation, available_disk(folder.path()));
   Case resolved = with_paths_from(folder.target(), input);
   keep_tables(resolved, folder.path());
   folder.publish(contents(input.file), resolved_case(resolved));
@@ -134,8 +137,10 @@ Summary run_case(const Case& input, const RunOptions& options) {
   Progress screen;
   Log log(std::cerr, [&] { screen.clear(); });
   log.open(folder.log());
-  log.info(fmt::format("{}: {} points, {} bonds, {} threads -> {}", input.title, simulation.model->points(),
-                       simulation.model->bonds(), omp_get_max_threads(), options.folder.string()));
+  log.info(fmt::format("{}: {} points, {} bonds, {}, about {} of memory and {} -> {}", input.title,
+                       simulation.model->points(), simulation.model->bonds(),
+                       count_text(omp_get_max_threads(), "thread"), bytes_text(memory_estimate(input)),
+                       duration_text(time_estimate(simulation).total_s()), options.folder.string()));
   for (const std::string& warning : warnings(simulation)) log.warning(warning);
   Recorder recorder(simulation, probes, folder, screen, log);
   watch_interrupts();

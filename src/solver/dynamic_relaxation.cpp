@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "solver/watchdog.hpp"
 #include "solver/work.hpp"
 
 namespace riven {
@@ -21,6 +22,8 @@ constexpr double kJump =
 constexpr long kStepsOfPoorBalance = 3;
 constexpr double kLargestDamping = 1.9;  // below the critical 2 of eq. (11)
 constexpr int kProgressEvery = 50;       // iterations
+constexpr long kPatience =
+    1000;  // iterations without progress; a quarter of solver.max_iterations if that is more
 
 /// Sums that one iteration needs, gathered in one sweep.
 struct Sums {
@@ -40,7 +43,12 @@ class Relaxation {
  public:
   Relaxation(Model& model, Constraints& constraints, const DynamicRelaxationSettings& settings,
              Observer& observer)
-      : model_(model), constraints_(constraints), settings_(settings), observer_(observer), n_(model.dofs()) {
+      : model_(model),
+        constraints_(constraints),
+        settings_(settings),
+        observer_(observer),
+        watchdog_(model),
+        n_(model.dofs()) {
     state_.u.assign(n_, 0.0);
     state_.parameter = settings.start;
     for (auto* vector : {&force_, &old_force_, &velocity_, &mass_, &before_}) vector->assign(n_, 0.0);
@@ -87,12 +95,10 @@ class Relaxation {
 
   [[noreturn]] void give_up(const std::string& failure) const {
     throw SolverFailure(
-        fmt::format("no equilibrium beyond {:.6g}, not even with load steps {} times smaller: {}. The sheet "
-                    "may have lost "
-                    "stability there (wrinkling, folding), or the law may not stand the load; try a smaller "
-                    "solver.increment, a finer "
-                    "lattice, or look at the last good state",
-                    state_.parameter, 1 << kMostCuts, failure));
+        fmt::format("no equilibrium beyond {:.6g} (load step {}), not even with load steps {} times smaller: "
+                    "{}. The body may have lost stability there (wrinkling, folding), or the law may not "
+                    "stand the load; try {}, or another load",
+                    state_.parameter, state_.steps + 1, 1 << kMostCuts, failure, model_.remedies()));
   }
 
   /// Takes the state to a new parameter, or leaves it as it was and says why.
@@ -142,28 +148,41 @@ class Relaxation {
     std::fill(velocity_.begin(), velocity_.end(), 0.0);
     constraints_.apply(state_.u);
     set_masses();
+    StallWatch stall(std::max(kPatience, settings_.max_iterations / 4));
+    double residual = 0;
     for (long iteration = 0; iteration < settings_.max_iterations; ++iteration) {
       std::swap(force_, old_force_);
-      if (const auto breakdown = evaluate()) return describe(*breakdown);
+      if (const auto breakdown = evaluate()) return text(*breakdown);
       const Sums sums = sweep();
-      if (!std::isfinite(sums.force2)) return "the forces are no longer finite";
-      const double residual =
-          std::sqrt(sums.force2) / std::max(constraints_.reaction_norm(), least_reaction_);
-      if (iteration % kProgressEvery == 0 || residual <= settings_.tolerance)
+      residual = std::sqrt(sums.force2) / std::max(constraints_.reaction_norm(), least_reaction_);
+      const bool converged = residual <= settings_.tolerance;
+      if (iteration % kProgressEvery == 0 || converged || !std::isfinite(residual)) {
+        if (const auto breakdown = watchdog_.inspect(constraints_, state_.u, force_)) return text(*breakdown);
         report(target, iteration, residual);
-      if (residual <= settings_.tolerance) {
-        const auto breakdown = model_.inspect(state_.u);
-        return breakdown ? std::make_optional(describe(*breakdown)) : std::nullopt;
       }
+      if (converged) {
+        const auto breakdown = model_.inspect(state_.u);
+        return breakdown ? std::make_optional(text(*breakdown)) : std::nullopt;
+      }
+      if (stall.stalled(iteration, residual))
+        return fmt::format("the residual has stalled for {} iterations: {}", stall.patience(),
+                           unrest(residual));
       advance(damping(sums), iteration == 0);
     }
-    return fmt::format("not converged in the {} iterations of solver.max_iterations",
-                       settings_.max_iterations);
+    return fmt::format("not converged in the {} iterations of solver.max_iterations: {}",
+                       settings_.max_iterations, unrest(residual));
+  }
+
+  /// How far from equilibrium the present state is, and where most.
+  [[nodiscard]] std::string unrest(double residual) const {
+    return fmt::format("a residual of {:.2g} is left (solver.tolerance {:.2g}), the largest force at {}",
+                       residual, settings_.tolerance, text(model_.place(Watchdog::largest(force_))));
   }
 
   std::optional<Breakdown> evaluate() {
     ++state_.evaluations;
-    if (auto breakdown = model_.internal_force(state_.u, force_)) return breakdown;
+    if (const auto breakdown = model_.internal_force(state_.u, force_))
+      return watchdog_.inspect(constraints_, state_.u, state_.u).value_or(*breakdown);
     constraints_.reduce(force_);
     return std::nullopt;
   }
@@ -241,15 +260,11 @@ class Relaxation {
                           .tolerance = settings_.tolerance});
   }
 
-  static std::string describe(const Breakdown& breakdown) {
-    return fmt::format("{} at ({:.4g}, {:.4g}, {:.4g}) m", breakdown.what, breakdown.position[0],
-                       breakdown.position[1], breakdown.position[2]);
-  }
-
   Model& model_;
   Constraints& constraints_;
   const DynamicRelaxationSettings& settings_;
   Observer& observer_;
+  Watchdog watchdog_;
   std::size_t n_;
   State state_;
   WorkIntegral work_{WorkIntegral::Rule::parabolic};

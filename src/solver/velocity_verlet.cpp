@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "solver/watchdog.hpp"
 #include "solver/work.hpp"
 
 namespace riven {
@@ -38,7 +39,12 @@ class Schedule {
 class Verlet {
  public:
   Verlet(Model& model, Constraints& constraints, const VelocityVerletSettings& settings, Observer& observer)
-      : model_(model), constraints_(constraints), settings_(settings), observer_(observer), n_(model.dofs()) {
+      : model_(model),
+        constraints_(constraints),
+        settings_(settings),
+        observer_(observer),
+        watchdog_(model),
+        n_(model.dofs()) {
     state_.parameter = 0;
     state_.u.assign(n_, 0.0);
     state_.v.assign(n_, 0.0);
@@ -62,6 +68,7 @@ class Verlet {
     while (state_.parameter < settings_.until * (1 - 1e-12)) {
       const double event = std::min(outputs.next(), history.next());
       advance_to(event);
+      look_at_body();
       balance();
       check_energy();
       const bool output = outputs.due(event), row = history.due(event);
@@ -88,6 +95,7 @@ class Verlet {
                             .end = settings_.until,
                             .step = state_.steps,
                             .evaluations = state_.evaluations});
+      look_at_body();
       estimate_step();
       balance();
       check_energy();
@@ -119,7 +127,8 @@ class Verlet {
 
   void evaluate() {
     ++state_.evaluations;
-    if (const auto breakdown = model_.advance(state_.u, force_)) fail(*breakdown);
+    if (const auto breakdown = model_.advance(state_.u, force_))
+      fail(watchdog_.inspect(constraints_, state_.u, state_.u, state_.v).value_or(*breakdown));
     constraints_.reduce(force_);
   }
 
@@ -142,15 +151,9 @@ class Verlet {
 
   /// Energy of motions too small to tell from rounding: a body at rest keeps no balance worth watching.
   [[nodiscard]] double rounding_energy() const {
-    const std::vector<Point> positions = model_.positions();
-    double extent2 = 0;  // of the body's box, squared (m^2)
-    for (std::size_t a = 0; a < 3; ++a) {
-      const auto [least, most] = std::minmax_element(
-          positions.begin(), positions.end(), [a](const Point& p, const Point& q) { return p[a] < q[a]; });
-      extent2 += ((*most)[a] - (*least)[a]) * ((*most)[a] - (*least)[a]);
-    }
     const double total = ordered_sum_of(n_, [&](std::size_t i) { return mass_[i]; });
-    return 1e-18 * total * extent2 / (step_ * step_);
+    const double speed = watchdog_.size() / step_;
+    return 1e-18 * total * speed * speed;
   }
 
   void balance() {
@@ -163,33 +166,42 @@ class Verlet {
                                std::abs(energy.external_work)});
   }
 
+  void look_at_body() const {
+    if (const auto breakdown = watchdog_.inspect(constraints_, state_.u, force_, state_.v)) fail(*breakdown);
+  }
+
   void check_points() {
     if (const auto breakdown = model_.inspect(state_.u)) fail(*breakdown);
   }
 
   void check_energy() const {
     const double error = state_.energy.error();
-    if (std::abs(error) <= kRunaway || state_.energy.largest <= rounding_energy()) return;
+    if (!model_.conservative() || std::abs(error) <= kRunaway || state_.energy.largest <= rounding_energy())
+      return;
+    const std::size_t fastest = Watchdog::largest(state_.v);
     throw SolverFailure(
-        fmt::format("at t = {:.6g} s, step {}, the energy runs away: {:.1f} % of it came from nowhere. The "
-                    "step of {:.4g} s is likely "
-                    "too long for this deformation; try a smaller solver.safety",
-                    state_.parameter, state_.steps, 100 * error, step_));
+        fmt::format("at t = {:.6g} s, step {}, the energy runs away: {:.1f} % of it came from nowhere; the "
+                    "fastest point, {:.3g} m/s, is that at {}. The step of {:.4g} s is likely too long for "
+                    "this deformation; try a smaller {}",
+                    state_.parameter, state_.steps, 100 * error, std::abs(state_.v[fastest]),
+                    text(model_.place(fastest)), step_, step_key()));
   }
 
+  /// What sets the length of a step.
+  [[nodiscard]] const char* step_key() const { return settings_.step ? "solver.step" : "solver.safety"; }
+
   [[noreturn]] void fail(const Breakdown& breakdown) const {
-    throw SolverFailure(
-        fmt::format("at t = {:.6g} s, step {}: {} at ({:.4g}, {:.4g}, {:.4g}) m. The load may be too fast or "
-                    "too large for this lattice and law; try a slower load, a finer lattice or a smaller "
-                    "solver.safety",
-                    state_.parameter, state_.steps, breakdown.what, breakdown.position[0],
-                    breakdown.position[1], breakdown.position[2]));
+    throw SolverFailure(fmt::format(
+        "at t = {:.6g} s, step {}: {}. The load may be too fast or too large for this lattice and "
+        "law; try a slower load, a smaller {}, {}",
+        state_.parameter, state_.steps, text(breakdown), step_key(), model_.remedies()));
   }
 
   Model& model_;
   Constraints& constraints_;
   const VelocityVerletSettings& settings_;
   Observer& observer_;
+  Watchdog watchdog_;
   std::size_t n_;
   State state_;
   WorkIntegral work_{WorkIntegral::Rule::trapezoidal};

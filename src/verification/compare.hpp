@@ -69,8 +69,9 @@ struct HistoryDeviation {
 
 /// Compares the column `metric` of a `history.csv` with the column `column` of a reference CSV file, whose
 /// states are in the column lambda, stretch, t_s, time or cycle, else in the first. The history is
-/// interpolated linearly in its first column. Units are not converted. Throws InputError when a file or
-/// column is missing or damaged, the history runs to and fro, or no row overlaps.
+/// interpolated linearly in its first column. Columns of the reference that name a unit, as in "F [kN]", are
+/// converted. Throws InputError when a file or column is missing or damaged, a unit does not fit, the history
+/// runs to and fro, or no row overlaps.
 HistoryDeviation compare_history(const std::filesystem::path& history, const std::filesystem::path& reference,
                                  std::string_view metric, std::string_view column);
 

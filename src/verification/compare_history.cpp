@@ -6,6 +6,7 @@
 
 #include "base/csv.hpp"
 #include "base/error.hpp"
+#include "input/column_unit.hpp"
 #include "output/history.hpp"
 #include "verification/compare.hpp"
 #include "verification/deviation.hpp"
@@ -15,13 +16,29 @@ namespace riven {
 namespace {
 
 struct Curve {
-  std::vector<double> x;  // ascending
+  std::string x_name, y_name;  // with their units
+  std::vector<double> x;       // ascending
   std::vector<double> y;
 };
 
+/// What a number in a column of the reference is multiplied with to be in the unit of the history's column. A
+/// column without a unit in brackets is taken as it is.
+double factor_to(const std::string& ours, const CsvTable& reference, std::size_t column) {
+  const Location header{reference.file(), reference.header_line()};
+  const std::string& theirs = reference.columns()[column];
+  const auto unit = column_unit(theirs, header);
+  if (!unit) return 1;
+  const Unit wanted = column_unit(ours, header).value_or(Unit{});  // SI
+  if (unit->dimension != wanted.dimension)
+    throw InputError(header, fmt::format("column \"{}\" is {}; expected {}, as \"{}\" of the history is",
+                                         theirs, named(unit->dimension), named(wanted.dimension), ours));
+  return unit->factor;
+}
+
 Curve read_curve(const std::filesystem::path& path, std::string_view metric) {
   const History history = History::read(path);
-  Curve curve{history.parameter(), history.column(metric)};
+  Curve curve{history.columns().front(), history.column_name(metric), history.parameter(),
+              history.column(metric)};
   if (std::is_sorted(curve.x.begin(), curve.x.end(), std::greater<>())) {
     std::reverse(curve.x.begin(), curve.x.end());
     std::reverse(curve.y.begin(), curve.y.end());
@@ -56,11 +73,13 @@ HistoryDeviation compare_history(const std::filesystem::path& history, const std
   const CsvTable table = CsvTable::read(reference);
   const std::size_t state = state_column(table).value_or(0);
   const std::size_t wanted = table.column(column);
+  const double state_unit = factor_to(curve.x_name, table, state),
+               unit = factor_to(curve.y_name, table, wanted);
   HistoryDeviation result;
   DeviationSum sum;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    const double x = table.number(row, state);
-    const double expected = table.number(row, wanted);
+    const double x = state_unit * table.number(row, state);
+    const double expected = unit * table.number(row, wanted);
     const auto found = value_at(curve, x);
     if (!found) {
       ++result.outside;

@@ -57,6 +57,19 @@ class Compare(ProgramTest):
         self.command(*words, "--tolerance", "1 %")
         self.command(*words, "--tolerance", "0.9 %", expect=1)
 
+    def test_units_of_a_reference(self):
+        force = {stretch: plain_force(stretch) for stretch in (1.2, 1.4)}
+        for header, factor in {"F [kN]": 1e-3, "F[N]": 1, "F": 1}.items():
+            self.write("curve.csv", f"stretch [-],{header}\n" + "".join(f"{s},{factor * f}\n" for s, f in force.items()))
+            words = ["compare", "sheet", "curve.csv", "--history", "force_x=F", "--json"]
+            self.assertLess(json.loads(self.command(*words).stdout)["relative_l2"], 1e-6)
+        self.write("curve.csv", "stretch,F [kPa]\n1.2,1\n")
+        said = self.refused("compare", "sheet", "curve.csv", "--history", "force_x=F")
+        self.assertIn('curve.csv:1: column "F [kPa]" is a pressure; expected ', said)
+        self.assertIn('as "force_x [N]" of the history is', said)
+        self.write("curve.csv", "stretch [s],F [N]\n1.2,1\n")
+        self.assertIn('"stretch [s]" is a time', self.refused("compare", "sheet", "curve.csv", "--history", "force_x=F"))
+
     def test_wrong_words(self):
         self.write("points.csv", "stretch,X_m,Y_m,ux_m,uy_m\n1.4,0.05,0,0.02,0\n")
         self.write("curve.csv", "stretch,F_N\n1.4,1\n")

@@ -57,7 +57,7 @@ class New(ProgramTest):
         self.assertRegex(self.command("verify", "expected.toml").stdout, r"force \[N\] .* ok\n")
         self.command("check", self.write("all.toml", uncommented(text)))
         self.command("run", "all.toml")
-        for kind, on in {"membrane-dynamic": "load.1", "table": "load.1"}.items():
+        for kind, on in {"membrane-dynamic": "load.2", "table": "load.2"}.items():
             self.command("new", "--kind", kind, f"{kind}.toml")
             comments = re.findall(r'(?m)^#.*', (self.top / f"{kind}.toml").read_text(encoding="utf-8"))
             formulas = [f for line in comments for f in re.findall(r'"([^"]*\bt\b[^"]*)"', line)

@@ -56,6 +56,15 @@ class Results(ProgramTest):
         self.assertGreater(summary["memory_peak_bytes"], 1e6)
         self.assertLess(summary["memory_peak_bytes"], 1e9)
 
+    def test_expectations_that_overrides_leave_out_are_counted(self):
+        text = PLAIN + "".join(f'\n[[expect]]\nmetric = "force_x"\nmin = "1 N"\nat = {at}\nkind = "published"\n' for at in (1.2, 1.4))
+        case = self.write("sheet.toml", text)
+        self.assertNotIn("left out", self.command("run", case, "-o", "all").stderr)
+        said = self.command("run", case, "-o", "one", "--set", "solver.stretch=[1.2]").stderr
+        self.assertIn("1 expectation is at a state that this run does not reach; it is left out\n", said)
+        said = self.command("check", case, "--set", "solver.stretch=[1.1]").stdout
+        self.assertIn("# 2 expectations are at states that this run does not reach; they are left out\n", said)
+
     def test_history_and_fields(self):
         self.command("run", self.write("hole.toml", HOLE), "-o", "out")
         columns, rows = history(self.top / "out")
@@ -211,7 +220,7 @@ class Screen(ProgramTest):
         self.assertNotIn("\x1b", done.stderr)
         self.assertNotIn("\r", done.stderr)
         lines = done.stderr.splitlines()
-        self.assertRegex(lines[0], r"^Sheet: 400 points, 11200 bonds, \d+ threads -> results/sheet$")
+        self.assertRegex(lines[0], r"^Sheet: 400 points, 11200 bonds, \d+ threads?, about \d+ MB of memory and [\d.]+ s -> results/sheet$")
         self.assertTrue(any(re.match(r"step \d+/\d+, stretch 1\.4, residual ", line) for line in lines), lines)
         self.assertRegex(lines[-2], r"^finished in [\d.]+ s, \d+ force evaluations")
         self.assertTrue(lines[-1].startswith("results: results/sheet/ "), lines[-1])

@@ -139,8 +139,16 @@ class Verify(ProgramTest):
         case = self.write("met.toml", MET)
         self.command("verify", case)
         self.command("verify", case)
+        self.assertIn("force_x", (self.top / "results/met/verification.txt").read_text())
+        self.command("run", case, "--force")
+        before = (self.top / "results/met/riven.log").read_text()
+        self.assertIn("results/met: exists already", self.command("verify", case, expect=2).stderr)
+        self.assertEqual((self.top / "results/met/riven.log").read_text(), before)
+        self.command("verify", case, "--force")
         note = self.write("results/other/note.txt", "dear")
-        self.assertIn("not a result of Riven", self.command("verify", self.write("other.toml", MET), expect=2).stderr)
+        for force in [], ["--force"]:
+            said = self.command("verify", self.write("other.toml", MET), *force, expect=2).stderr
+            self.assertIn("not a result of Riven" if force else "exists already", said)
         self.assertEqual(note.read_text(), "dear")
 
     def test_a_shipped_case(self):

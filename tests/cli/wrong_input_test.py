@@ -1,5 +1,8 @@
 """Wrong input ends with 2 and one line that says where and what was expected; nothing is left on disk."""
 
+import os
+import pathlib
+import random
 import re
 import unittest
 
@@ -31,6 +34,9 @@ TABLE = replaced(replaced(MOVING, "[geometry]", '[table.pull]\nfile = "pull.csv"
 STATIC_TABLE = replaced(replaced(PLAIN, "[geometry]", '[table.pull]\nfile = "steps.csv"\n\n[geometry]'),
                         '"(stretch - 1)*x"', '"pull(stretch) * x"')
 CLOUD = replaced(PLAIN, BOX, POINTS)
+
+FREE = replaced(replaced(CLOUD, ', box = { size = ["0.2 m", "0.2 m"] }', ""), 'on = ["left", "right", "bottom", "top"]', 'on = "all"')
+FREE = replaced(FREE, 'on = "right"', 'on = "all"') + SET.format(name="all", where="x > -1 m")
 
 # case, what is replaced, by what, the key's line as a fragment (the message must name its line), part of the message
 MISTAKES = [
@@ -69,8 +75,8 @@ MISTAKES = [
      'does not apply here; it belongs to kind = "membrane-bond"'),
     ("stabilised bonds", BOND, 'variant = "published"', 'variant = "published"\nstabilisation = 4', "stabilisation =",
      'it belongs to kind = "membrane"'),
-    ("bonds of another law", BOND, 'law = "neo-hookean"\nyoungs_modulus = "6 MPa"', 'law = "yeoh"\nc10 = "1 MPa"', "[model]",
-     'expected law = "neo-hookean"'),
+    ("bonds of another law", BOND, 'law = "neo-hookean"\nyoungs_modulus = "6 MPa"', 'law = "yeoh"\nc10 = "1 MPa"', "law =",
+     'expected "neo-hookean"'),
     ("a field of the other model", BOND + '\n[output]\nfields = ["damage"]\n', '["damage"]', '["weight_minimum"]', "[output]",
      'the model "membrane-bond" has no field "weight_minimum"'),
     ("no density in motion", MOVING, 'density = "1100 kg/m^3"', "", "[material.rubber]", "density"),
@@ -132,6 +138,9 @@ MISTAKES = [
     ("a hyphen", TABLE, "[table.pull]", "[table.my-pull]", "[table.my-pull]", "which formulas could not call"),
     ("unknown table", TABLE, "pull(t)", "pul(t)", "displacement", 'did you mean "pull"?'),
     ("a table without argument", TABLE, "pull(t)", "pull", "displacement", '"pull" is a table'),
+    ("one column name twice", TABLE, 'file = "pull.csv"', 'file = "twins.csv"\nargument = "t"', 'file = "twins.csv"',
+     'twins.csv:1: found the columns "t [ms]" and "t [s]"'),
+    ("semicolons", TABLE, "pull.csv", "semicolons.csv", 'file = "semicolons.csv"', "semicolons.csv:1: found cells separated by semicolons"),
     ("two arguments", TABLE, "pull(t)", "pull(t, x)", "displacement", "Too many parameters"),
     ("a place for a time", TABLE, "pull(t)", "pull(x)", "displacement", "the table pull takes a time"),
     ("an area for a length", TABLE, "pull(t) * x / 0.1 m", "pull(t) * 1 m", "displacement", "an area (m^2); expected a length"),
@@ -143,6 +152,9 @@ MISTAKES = [
     ("a set beyond a table", TABLE + SET.format(name="far", where="y > pull(x * 1 s/m) + 1 mm"), "1 s/m", "2 s/m", "where",
      "the table pull has no value"),
     ("a constant beyond a table", TABLE, 'until = "4 ms"', 'until = "1 s * pull(5 ms) / 1 mm"', "until", "no value at 0.005 s"),
+    ("volumes too large for the box", CLOUD, "sheet.csv", "large.csv", "points =", "is the unit of the volumes right?"),
+    ("volumes too large without a box", FREE, "sheet.csv", "large.csv", "points =", "is the unit of the volumes right?"),
+    ("volumes too small without a box", FREE, "sheet.csv", "small.csv", "[geometry]", "is the unit of the volumes right?"),
     ("no file of points", CLOUD, "sheet.csv", "shet.csv", "points =", "shet.csv: there is no such file"),
     ("points outside of the box", CLOUD, 'size = ["0.2 m", "0.2 m"]', 'size = ["0.1 m", "0.2 m"]', "points =",
      "sheet.csv:2: the point at (-0.095, -0.095) m lies outside of the box"),
@@ -154,6 +166,40 @@ MISTAKES = [
     ("points and a box", CLOUD, POINTS, POINTS + "\n" + BOX, "points = {", "given together with"),
     ("bonds of points on a lattice", CLOUD, POINTS, POINTS + '\nbonds = "lattice"', "bonds =", 'expected "listed"'),
     ("unknown bonds", PLAIN, BOX, BOX + '\nbonds = "list"', "bonds =", 'did you mean "listed"?'),
+    ("too many states", MOVING, 'every = "2 ms"', 'every = "1e-30 s"', "every =", "gives 4e+27 output states; expected 1e+06 at most"),
+    ("too many rows", MOVING, 'history_every = "1 ms"', 'history_every = "1e-30 s"', "history_every =", "rows of the history"),
+    ("too many steps", replaced(MOVING, '[output]\nevery = "2 ms"\nhistory_every = "1 ms"\n', ""), 'until = "4 ms"', 'until = "1e9 s"', "until =", "time steps of"),
+    ("too many short steps", MOVING, 'until = "4 ms"', 'until = "4 ms"\nstep = "1e-20 s"', "step =", "gives 4e+17 time steps"),
+    ("too many load steps", PLAIN, "stretch = [1.2, 1.4]", "stretch = [1.2, 1.4]\nincrement = 1e-30", "increment =", "load steps"),
+    ("more than the disk holds", replaced(replaced(replaced(MOVING, "points = [20, 20]", "points = [100, 100]"), 'every = "2 ms"\n', 'every = "5 ns"\n'),
+                                          '"4 ms"', '"4.4 ms"'), '"1 ms"', '"2 ms"', "[output]", "on disk"),
+    ("a size of zero", PLAIN, '"0.2 m", "0.2 m"', '"0 m", "0.2 m"', "size", "expected a value above 0"),
+    ("a negative size", PLAIN, '"0.2 m", "0.2 m"', '"-0.2 m", "0.2 m"', "size", "expected a value above 0"),
+    ("a negative radius", HOLE, 'radius = "30 mm"', 'radius = "-30 mm"', "radius", "above 0"),
+    ("a size without end", PLAIN, '"0.2 m", "0.2 m"', '"inf m", "0.2 m"', "size", "inf"),
+    ("a number without end", PLAIN, "stretch = [1.2, 1.4]", "stretch = [1.2, inf]", "stretch =", "expected a finite number"),
+    ("a number too large for a double", PLAIN, '"6 MPa"', '"1e999 Pa"', "youngs_modulus", "1e999"),
+    ("a division by zero", PLAIN, '"6 MPa"', '"6 MPa / 0"', "youngs_modulus", "gives no finite number"),
+    ("a division by zero in a load", PLAIN, '"(stretch - 1)*x"', '"1 mm / 0"', "displacement", "finite"),
+    ("too few arguments", PLAIN, '"(stretch - 1)*x"', '"1 mm * pow(stretch)"', "displacement", "pow"),
+    ("too many arguments", PLAIN, '"(stretch - 1)*x"', '"1 mm * sin(stretch, 1)"', "displacement", "sin"),
+    ("unknown function", PLAIN, '"(stretch - 1)*x"', '"1 mm * sine(stretch)"', "displacement", "sine"),
+    ("an operator alone", PLAIN, '"(stretch - 1)*x"', '"(stretch - ) * x"', "displacement", "stretch"),
+    ("an empty formula", PLAIN, '"(stretch - 1)*x"', '""', "displacement", "load.1.displacement.1"),
+    ("a number for a text", PLAIN, 'law = "neo-hookean"', "law = 3", "law = 3", "expected a string"),
+    ("a text for a number", PLAIN, "[20, 20]", '["20", 20]', "points", "expected a whole number"),
+    ("a table for a list", PLAIN, "[1.2, 1.4]", "{ a = 1 }", "stretch =", "found a table; expected a list"),
+    ("a list for a table", PLAIN, BOX, "box = [1, 2]", "box = [1, 2]", "found a list; expected a table"),
+    ("a date", PLAIN, '"6 MPa"', "2024-01-01", "youngs_modulus", "2024-01-01"),
+    ("a truth value", PLAIN, '"6 MPa"', "true", "youngs_modulus", "true"),
+    ("half a point", PLAIN, "[20, 20]", "[20.5, 20]", "points", "expected a whole number"),
+    ("a huge integer", PLAIN, "[20, 20]", "[9223372036854775807, 20]", "points", "expected a whole number from"),
+    ("an integer that no machine holds", PLAIN, "[20, 20]", "[99999999999999999999, 20]", "points", "is not TOML here"),
+    ("a single table for an array", PLAIN, "[[load]]", "[load]", "[load]", "an array of tables, written [[load]]"),
+    ("a section twice", PLAIN, "[solver]", "[geometry]", "[geometry]", "is not TOML here"),
+    ("a very long line", PLAIN, '"Sheet"', '"' + 200000 * "x" + '" y', "title =", "is not TOML here"),
+    ("deep nesting", PLAIN, "[1.2, 1.4]", 5000 * "[" + 5000 * "]", "stretch =", "is not TOML here"),
+    ("deep brackets", PLAIN, '"(stretch - 1)*x"', '"' + 5000 * "(" + '"', "displacement", "displacement"),
     ("broken reference", PLAIN + FIELD, "points.csv", "broken.csv", "[[expect]]", "broken.csv:2"),
 ]
 
@@ -173,6 +219,10 @@ class WrongInput(ProgramTest):
                            "ragged": "0,0\n1,1,1\n", "fro": "0,0\n2,1\n1,2\n"}.items():
             self.write(f"{name}.csv", "t [ms],u [mm]\n" + rows)
         self.write("unit.csv", "t [sec],u [mm]\n0,0\n1,1\n")
+        self.write("twins.csv", "t [ms],t [s],u [mm]\n0,0,0\n4,4,1\n")
+        self.write("semicolons.csv", "t [ms];u [mm]\n0;0\n4;1\n")
+        self.write("large.csv", lattice_csv(20, 10).replace("mm^3", "cm^3"))
+        self.write("small.csv", lattice_csv(20, 10).replace("1000.0", "0.001").replace("1000\n", "0.001\n"))
 
     def test_each_mistake_is_named_with_its_place(self):
         for name, text, old, new, marked, message in MISTAKES:
@@ -209,13 +259,14 @@ class WrongInput(ProgramTest):
         for override, message in {
                 "solver.stretc=[2]": 'did you mean "stretch"?',
                 "geometry.box.points=[20]": "expected 2",
-                "load.3.on=left": "load",
+                "load.4.on=left": "expected a number from 1 to 1",
                 "solver": "expected path.to.key=value",
                 "material.rubber.youngs_modulus=6 mm": "expected a pressure"}.items():
             with self.subTest(override):
                 said = self.refused("run", case, "--set", override)
                 self.assertIn(message, said)
                 self.assertIn("--set", said)
+                self.assertEqual(said.count(override.split("=")[0]), 1, "the key stands there once")
 
     def test_the_short_variant_is_checked(self):
         text = PLAIN + '\n[short]\nset = ["solver.stretch=[1.1]"]\n'
@@ -225,8 +276,38 @@ class WrongInput(ProgramTest):
         self.write("late.toml", text + '[[short.expect]]\nmetric = "force_x"\nmin = "1 N"\nat = 1.4\nkind = "reference"\n')
         self.assertIn("its states are 1.1", self.refused("check", "late.toml"))
 
+    def test_a_result_that_is_there_stays_as_it_is(self):
+        self.command("run", self.write("right.toml", PLAIN), "-o", "kept")
+
+        def content():
+            return {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in (self.top / "kept").rglob("*") if p.is_file()}
+
+        before = content()
+        wrong = self.write("wrong.toml", replaced(PLAIN, "youngs_modulus", "youngs_modulu"))
+        late = self.write("late.toml", replaced(PLAIN + EXPECT, "at = 1.4", "at = 1.45"))
+        for words in ([wrong, "--force"], [late, "--force"], ["right.toml"], ["right.toml", "--set", "solver.stretch=[0]", "--force"]):
+            self.refused("run", *words, "-o", "kept")
+        self.assertEqual(content(), before)
+        # Folders that cannot be.
+        self.write("file", "mine")
+        for folder in ("file", "file/under", "/proc/riven"):
+            self.refused("run", "right.toml", "-o", folder)
+        self.assertEqual((self.top / "file").read_text(), "mine")
+        if os.geteuid() != 0:  # root may write everywhere
+            (self.top / "locked").mkdir(mode=0o500)
+            self.refused("run", "right.toml", "-o", "locked/out")
+
     def test_files_that_are_none(self):
         (self.top / "folder").mkdir()
+        (self.top / "utf16.toml").write_bytes(PLAIN.encode("utf-16"))
+        (self.top / "random.toml").write_bytes(bytes(random.Random(2).randrange(1, 256) for _ in range(2000)))
+        (self.top / "program.toml").write_bytes(pathlib.Path("/bin/true").read_bytes())
+        for name in ("utf16.toml", "random.toml", "program.toml"):
+            self.assertRegex(self.refused("run", name), rf"{name}(:\d+:\d+)?: is (not TOML here|a binary file)")
+        if os.geteuid() != 0:  # root may read everything
+            self.write("locked.toml", PLAIN).chmod(0)
+            self.assertIn("cannot be read", self.refused("run", "locked.toml"))
+        self.assertIn("is a directory", self.refused("run", "folder/"))
         self.write("empty.toml", "")
         (self.top / "bytes.toml").write_bytes(b"title = \"\xff\xfe\"\n")
         self.assertIn("is a directory", self.refused("run", "folder"))

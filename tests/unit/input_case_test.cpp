@@ -164,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(
               "found \"membran\"; expected one of membrane, membrane-bond; did you mean \"membrane\"?"},
         Wrong{"\"neo-hookean\"", "\"neo-hokean\"", "18", "did you mean \"neo-hookean\"?"},
         Wrong{"\"dynamic-relaxation\"", "\"newton\"", "26", "expected one of dynamic-relaxation, verlet"},
-        Wrong{"\"damage\"]", "\"damge\"]", "31:27", "output.fields.1: found \"damge\""},
+        Wrong{"\"damage\"]", "\"damge\"]", "31:27", "output.fields.2: found \"damge\""},
         Wrong{"\"damage\"]", "\"displacement\"]", "31", "twice"},
         Wrong{"on = [\"left\"", "on = [\"lefft\"", "22:7", "did you mean \"left\"?"},
         Wrong{"on = \"right\"", "on = \"cor\"", "36", "did you mean \"core\"?"},
@@ -235,9 +235,9 @@ INSTANTIATE_TEST_SUITE_P(
               "box = { size = ['1 mm', '1 mm'], center = [0, 0], from = [0, 0] }", "8",
               "given together with center; expected at most one"},
         Wrong{"disc = { radius = \"80 mm\" }", "", "7",
-              "hole.0: nothing found; expected one of disc, box, ball"},
+              "hole.1: nothing found; expected one of disc, box, ball"},
         Wrong{"radius = \"80 mm\"", "", "8:8",
-              "hole.0.disc.radius: missing; expected a length such as \"10 mm\""},
+              "hole.1.disc.radius: missing; expected a length such as \"10 mm\""},
         Wrong{"\"dynamic-relaxation\"\nstretch = [1.5, 2, 2.5, 3]\ntolerance = 1e-5",
               "\"verlet\"\nuntil = '1 s'", "17:1", "material.rubber.density: missing with solver.method"},
         Wrong{"tolerance = 1e-5", "until = \"1 s\"", "28:9",
@@ -256,7 +256,7 @@ INSTANTIATE_TEST_SUITE_P(
               "2 materials are given"},
         Wrong{"[material.rubber]\nlaw = \"neo-hookean\"\nyoungs_modulus = \"0.109 GPa\"", "", "1:1",
               "material: missing"},
-        Wrong{"on = \"right\"", "", "33:1", "probe.0.on: missing with kind = \"reaction\""},
+        Wrong{"on = \"right\"", "", "33:1", "probe.1.on: missing with kind = \"reaction\""},
         Wrong{"[[expect]]", "[[probe]]\nname = 'force_x'\nkind = 'reaction'\non = 'left'\n[[expect]]", "39:8",
               "is the name of another one"},
         Wrong{"metric = \"force_x\"", "", "38:1", "expected one of metric, field"},
@@ -268,7 +268,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"tolerance = \"0.5 %\"", "", "40", "a reference decides"},
         Wrong{"tolerance = \"0.5 %\"", "absolute_tolerance = \"1 mm\"", "41", "is in m; expected N"},
         Wrong{"metric = \"force_x\"\nvalue = \"512 kN\"", "field = 'displacement'", "38",
-              "expect.0.file: missing"},
+              "expect.1.file: missing"},
         Wrong{"solver.stretch=[1.5]", "solver.stretch", "47", "expected \"path.to.key=value\""},
         Wrong{"[[hole]]", "[[crack]]\nfrom = [0, 0]\nto = [0, 0]\n[[hole]]", "9", "same place as from"},
         Wrong{"[[hole]]", "[[inclusion]]\nname = 'a'\ndisc = {radius = '1 mm'}\n[[hole]]", "8",
@@ -332,8 +332,8 @@ TEST(CaseReader, BoxesOfASheetAreEndlessAcrossIt) {
 TEST(Overrides, ChangeValuesOfAnyKind) {
   const Case c = parse_case(static_case, "case.toml",
                             {"geometry.horizon=4 dx", "solver.stretch=[1.2, 1.4]",
-                             "load.0.displacement.1=1 mm", "output.fields=[\"damage\"]", "title=Another",
-                             "geometry.box.spacing=\"10 mm\"", "solver.increment = 0.05", "load.0.on=top"});
+                             "load.1.displacement.2=1 mm", "output.fields=[\"damage\"]", "title=Another",
+                             "geometry.box.spacing=\"10 mm\"", "solver.increment = 0.05", "load.1.on=top"});
   EXPECT_DOUBLE_EQ(c.geometry.horizon, 0.04);
   EXPECT_EQ(c.solver.stretch, (std::vector<double>{1.2, 1.4}));
   EXPECT_EQ((*c.loads[0].displacement[1].value)({}), 1e-3);
@@ -353,7 +353,8 @@ TEST(Overrides, AreCheckedLikeTheFile) {
   EXPECT_NE(error_of(static_case, {"geometry.horizon=1 mm"}).find("below the spacing"), std::string::npos);
   EXPECT_NE(error_of(static_case, {"geometry.horizn=1 mm"}).find("did you mean \"horizon\"?"),
             std::string::npos);
-  EXPECT_NE(error_of(static_case, {"load.1.on=top"}).find("--set load.1.on: load has 1 entries"),
+  EXPECT_NE(error_of(static_case, {"load.2.on=top"})
+                .find("--set load.2.on: load has 1 entry; expected a number from 1 to 1"),
             std::string::npos);
   EXPECT_NE(error_of(static_case, {"title.x=1"}).find("title is neither a table nor a list"),
             std::string::npos);

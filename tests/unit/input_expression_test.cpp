@@ -9,7 +9,7 @@
 namespace riven {
 namespace {
 
-const Origin origin{"load.0.displacement", {"case.toml", 7, 16}, 17};
+const Origin origin{"load.1.displacement", {"case.toml", 7, 16}, 17};
 const Symbols symbols{0.005, 0.015, {"x", "y", "z", "t", "stretch"}};
 constexpr Dimension rate{.second = -1};
 
@@ -93,7 +93,7 @@ TEST(Formula, DimensionsThatDoNotFitAreRefused) {
 TEST(Formula, ErrorsPointIntoTheText) {
   // The text starts in column 17.
   EXPECT_EQ(error("2 mm * strech", dimension::length).substr(0, 41),
-            "case.toml:7:24: load.0.displacement: \"2 m");
+            "case.toml:7:24: load.1.displacement: \"2 m");
   EXPECT_NE(error("2 mm * strech", dimension::length).find("did you mean \"stretch\"?"), std::string::npos);
   EXPECT_EQ(error("1 µm * strech", dimension::length).substr(0, 15), "case.toml:7:24:");
   EXPECT_EQ(error("2 mmm", dimension::length).substr(0, 15), "case.toml:7:19:");
@@ -102,7 +102,7 @@ TEST(Formula, ErrorsPointIntoTheText) {
   EXPECT_EQ(error("x = 3 mm", dimension::length).substr(0, 15), "case.toml:7:19:");
   EXPECT_EQ(
       error("20 1/s", rate),
-      "case.toml:7:20: load.0.displacement: \"20 1/s\": a unit does not begin with a number; write \"20 "
+      "case.toml:7:20: load.1.displacement: \"20 1/s\": a unit does not begin with a number; write \"20 "
       "/s\" or \"20 s^-1\"");
   EXPECT_NE(error("2e3 1/s^2 * x", dimension::length).find("write \"2e3 /s^2\""), std::string::npos);
   EXPECT_NE(error("2 3", dimension::none).find("two numbers stand side by side"), std::string::npos);

@@ -122,8 +122,7 @@ TEST(TableFunction, RefusesWhatIsNoTable) {
            {"t,u\n# note\n0,0\n", "a.csv:1: found one row below the column names; expected two rows"},
            {"t,u\n", "a.csv:1: found no row"},
            {"t\n0\n1\n", "a.csv:1: found one column, \"t\"; expected an argument and a value"},
-           {"t;u\n0;0\n1;1\n",
-            "a.csv:1: found one column, \"t;u\"; expected an argument and a value, with a comma"},
+           {"t;u\n0;0\n1;1\n", "a.csv:1: found cells separated by semicolons; expected commas between cells"},
            {"", "a.csv: expected a row of column names"},
            {"t,u\n0,0\n1,1\n1,2\n",
             "a.csv:4: column \"t\": 1 comes after 1; expected an argument that rises"},
@@ -137,7 +136,7 @@ TEST(TableFunction, RefusesWhatIsNoTable) {
   EXPECT_NE(refusal("t,u\n0,0\n1,1\n", "u").find("is both argument and value"), std::string::npos);
 }
 
-const Origin origin{"load.0.displacement", {"case.toml", 7, 16}, 17};
+const Origin origin{"load.1.displacement", {"case.toml", 7, 16}, 17};
 
 Symbols symbols(const std::string& text = pull, bool hold = false) {
   return {0.005, 0.015, {"x", "y", "z", "t", "stretch"}, {make(text, hold)}};

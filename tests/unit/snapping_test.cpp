@@ -45,6 +45,7 @@ class DoubleWell final : public Model {
     return {Point{u[1], 0, 0}};
   }
   [[nodiscard]] std::vector<ModelField> fields(std::span<const double>) override { return {}; }
+  [[nodiscard]] Point place(std::size_t) const override { return {}; }
   [[nodiscard]] std::vector<std::string> describe() const override { return {}; }
   [[nodiscard]] std::size_t points() const override { return 1; }
   [[nodiscard]] std::size_t bonds() const override { return 1; }

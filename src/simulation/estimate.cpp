@@ -1,0 +1,222 @@
+#include "simulation/estimate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "solver/velocity_verlet.hpp"
+
+namespace riven {
+
+namespace {
+
+constexpr double kProgram = 16e6;  // bytes of the program itself
+constexpr double kNumber = sizeof(double);
+// Numbers per point and direction: the vectors of a solver with those of its observers.
+constexpr double kSolver = 11;
+// Numbers per point: what is copied while an output state is written, and what a body knows of a point.
+constexpr double kOutput = 25;
+
+/// What a kind of model takes besides (bytes).
+struct Footprint {
+  double point = 0;        // per stored point
+  double listed_bond = 0;  // per directed bond of a list, body and model together
+};
+
+Footprint footprint(const std::string& model_kind) {
+  if (model_kind == "membrane-bond") return {90, 5};
+  if (model_kind == "pmb") return {80, 20};
+  return {220, 54};
+}
+
+double points_along(const Shape& shape, double spacing, std::size_t axis) {
+  if (const auto* box = std::get_if<Box>(&shape)) return std::ceil(2 * box->half_size[axis] / spacing - 1e-6);
+  const double radius =
+      std::holds_alternative<Disc>(shape) ? std::get<Disc>(shape).radius : std::get<Ball>(shape).radius;
+  return std::ceil(2 * radius / spacing - 1e-6);
+}
+
+/// Points of the body's box, or of its file.
+double body_points(const GeometryInput& geometry) {
+  if (geometry.points) return static_cast<double>(geometry.points->list->position.size());
+  double points = 1;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(geometry.dimension); ++axis)
+    points *= points_along(geometry.shape, geometry.spacing, axis);
+  return points;
+}
+
+/// The smallest spacing (m), with horizon in proportion, whose run fits; two digits, rounded up.
+double spacing_that_fits(Case input, double available) {
+  const double spacing = input.geometry.spacing, horizon = input.geometry.horizon;
+  double low = 0, high = 30;  // powers of ten of what the spacing is multiplied with
+  while (high - low > 1e-3) {
+    const double middle = 0.5 * (low + high), factor = std::pow(10, middle);
+    input.geometry.spacing = factor * spacing;
+    input.geometry.horizon = factor * horizon;
+    (memory_estimate(input) > available ? low : high) = middle;
+  }
+  const double fits = spacing * std::pow(10, high);
+  const double digit = std::pow(10, std::floor(std::log10(fits)) - 1);
+  return digit * std::ceil(fits / digit);
+}
+
+double output_states(const Simulation& simulation) {
+  const SolverInput& solver = simulation.input.solver;
+  if (simulation.parameter == Parameter::stretch) return static_cast<double>(solver.stretch.size());
+  return 1 + std::ceil(solver.until / simulation.input.output.every.value_or(solver.until) - 1e-9);
+}
+
+double load_steps(const SolverInput& solver) {
+  double steps = 1, before = 1;  // one small step comes first
+  for (const double stretch : solver.stretch) {
+    steps += std::ceil(std::abs(stretch - before) / solver.increment - 1e-9);
+    before = stretch;
+  }
+  return steps;
+}
+
+double history_rows(const Simulation& simulation) {
+  const Case& input = simulation.input;
+  if (simulation.parameter == Parameter::stretch) return load_steps(input.solver);
+  const double every = input.output.every.value_or(input.solver.until);
+  return 1 + std::ceil(input.solver.until / input.output.history_every.value_or(every) - 1e-9);
+}
+
+/// Seconds of a force evaluation: the median, for threads that wait for a busy core now and then say nothing
+/// about the run.
+double measured_evaluation(Model& model) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds kMoment{200};
+  constexpr std::size_t kEnough = 15;
+  const std::vector<double> rest(model.dofs(), 0.0);
+  std::vector<double> force(model.dofs());
+  const auto evaluate = [&] { static_cast<void>(model.internal_force(rest, force)); };
+  evaluate();  // the first one touches new memory
+  std::vector<double> seconds;
+  const auto begin = Clock::now();
+  do {
+    const auto start = Clock::now();
+    evaluate();
+    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+  } while (seconds.size() < kEnough && Clock::now() - begin < kMoment);
+  const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
+  std::nth_element(seconds.begin(), middle, seconds.end());
+  return *middle;
+}
+
+/// Whether a load acts on one of the two edges across an axis.
+bool is_loaded(const Case& input, std::size_t axis) {
+  for (const LoadInput& load : input.loads)
+    for (const Named& on : load.on)
+      if (const auto face = Simulation::face(on.text); face && *face / 2 == axis) return true;
+  return false;
+}
+
+}  // namespace
+
+double memory_estimate(const Case& input) {
+  const GeometryInput& geometry = input.geometry;
+  const Footprint model = footprint(input.model.kind);
+  const double reach = geometry.horizon / geometry.spacing;
+  const auto dimension = static_cast<std::size_t>(geometry.dimension);
+  double points = 1, offsets = 1;
+  for (std::size_t axis = 0; axis < dimension; ++axis) {
+    const double along = geometry.points ? std::pow(body_points(geometry), 1.0 / geometry.dimension)
+                                         : points_along(geometry.shape, geometry.spacing, axis);
+    // Ghost layers lie behind loaded edges; the last axis has room to read beyond the ends.
+    points *= along + (axis + 1 == dimension || is_loaded(input, axis) ? 2 * reach : 0);
+    offsets *= 2 * reach;
+  }
+  // The share of the cube of offsets that lies within the horizon: a lattice has a bit for each.
+  constexpr std::array<double, 3> kBall = {1, std::numbers::pi / 4, std::numbers::pi / 6};
+  const double bonds = kBall[dimension - 1] * offsets;
+  const double per_point = kNumber * (kSolver * geometry.dimension + kOutput) + model.point +
+                           (geometry.bonds == "listed" ? model.listed_bond * bonds : bonds / 8);
+  return kProgram + points * per_point;
+}
+
+void check_memory(const Case& input, double available) {
+  const double need = memory_estimate(input);
+  if (need <= available) return;
+  const std::string expected = input.geometry.points ? "fewer points"
+                                                     : fmt::format("a larger spacing, {:.2g} m at least",
+                                                                   spacing_that_fits(input, available));
+  throw InputError(
+      input.geometry.at,
+      fmt::format("geometry: {:.3g} points need about {} of memory, and {} are available; expected {}",
+                  body_points(input.geometry), bytes_text(need), bytes_text(available), expected));
+}
+
+double output_estimate(const Simulation& simulation) {
+  constexpr double kAsText = 4.0 / 3;  // base64
+  constexpr double kCell = 20;         // characters of a number in the history
+  constexpr double kPosition = 3, kDisplacement = 3;
+  const auto& asked = simulation.input.output.fields;
+  const auto is_asked = [&](const std::string& field) {
+    return std::find(asked.begin(), asked.end(), field) != asked.end();
+  };
+  double numbers = kPosition + (is_asked("displacement") ? kDisplacement : 0);
+  const std::vector<double> rest(simulation.model->dofs(), 0.0);
+  for (const ModelField& field : simulation.model->fields(rest))
+    if (is_asked(field.name)) numbers += field.components;
+  const auto points = static_cast<double>(simulation.model->positions().size());
+  return output_states(simulation) * points * numbers * kNumber * kAsText +
+         history_rows(simulation) * kCell * static_cast<double>(1 + 2 * simulation.input.probes.size());
+}
+
+void check_disk(const Simulation& simulation, double available) {
+  const double need = output_estimate(simulation);
+  if (need <= available) return;
+  throw InputError(
+      simulation.input.output.at,
+      fmt::format("output: {:.6g} states of {} points take up to {} on disk, and {} are free; expected fewer "
+                  "states{} or fields",
+                  output_states(simulation), simulation.model->points(), bytes_text(need),
+                  bytes_text(available),
+                  simulation.parameter == Parameter::time ? " (every, history_every)" : ""));
+}
+
+TimeEstimate time_estimate(const Simulation& simulation) {
+  constexpr double kBesides = 1.15;  // of a step's time over that of its force
+  Model& model = *simulation.model;
+  TimeEstimate estimate;
+  estimate.evaluation_s = kBesides * measured_evaluation(model);
+  const SolverInput& solver = simulation.input.solver;
+  if (simulation.parameter == Parameter::time) {
+    const std::vector<double> rest(model.dofs(), 0.0);
+    const double step = solver.safety * stable_step(model, *simulation.constraints, rest);
+    estimate.evaluations = std::ceil(solver.until / solver.step.value_or(step));
+  } else {
+    constexpr double kPerPointAlongSide = 3.5;  // waves must cross the body a few times in each load step
+    const auto& faces = simulation.body->faces;
+    double side = 0;  // m
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(simulation.body->dimension); ++axis)
+      side = std::max(side, faces[2 * axis + 1] - faces[2 * axis]);
+    estimate.evaluations = kPerPointAlongSide * side / simulation.body->spacing * load_steps(solver);
+  }
+  return estimate;
+}
+
+std::string bytes_text(double bytes) {
+  if (bytes < 1e9) return fmt::format("{:.0f} MB", std::ceil(1e-6 * bytes));
+  return fmt::format("{:.3g} GB", 1e-9 * bytes);
+}
+
+std::string duration_text(double seconds) {
+  constexpr double kMinute = 60, kHour = 3600, kDay = 86400, kYear = 365 * kDay;
+  if (seconds < 10) return fmt::format("{:.1f} s", seconds);
+  if (seconds < 90) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 90 * kMinute) return fmt::format("{:.0f} min", seconds / kMinute);
+  if (seconds < 2 * kDay) return fmt::format("{:.1f} h", seconds / kHour);
+  if (seconds < 2 * kYear) return fmt::format("{:.0f} days", seconds / kDay);
+  return fmt::format("{:.2g} years", seconds / kYear);
+}
+
+std::string count_text(double count, const std::string& noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+}  // namespace riven
