@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/snapshot.hpp"
 #include "geometry/shape.hpp"
 
 namespace riven {
@@ -64,6 +65,10 @@ class Model {
   [[nodiscard]] virtual std::vector<Point> positions() const = 0;
   [[nodiscard]] virtual std::vector<Point> displacements(std::span<const double> u) const = 0;
   [[nodiscard]] virtual std::vector<ModelField> fields(std::span<const double> u) = 0;
+
+  /// What the model remembers of the states before, such as broken bonds; a model without memory keeps these.
+  virtual void save(Snapshot&) const {}
+  virtual void restore(const Snapshot&) {}
 
   /// What follows from the case, a line each: constants of the material, kinds of points.
   [[nodiscard]] virtual std::vector<std::string> describe() const = 0;
