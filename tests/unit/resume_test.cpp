@@ -167,9 +167,9 @@ TEST_P(Resuming, ChangesNoBit) {
 INSTANTIATE_TEST_SUITE_P(EveryModelAndSolver, Resuming,
                          ::testing::Combine(::testing::Range(std::size_t{0}, models().size()),
                                             ::testing::Range(std::size_t{0}, solvers().size())),
-                         [](const auto& info) {
-                           return std::string(models()[std::get<0>(info.param)].name) +
-                                  solvers()[std::get<1>(info.param)].name;
+                         [](const auto& row) {
+                           return std::string(models()[std::get<0>(row.param)].name) +
+                                  solvers()[std::get<1>(row.param)].name;
                          });
 
 TEST(ResumingElsewhere, RefusesASnapshotOfAnotherBody) {
