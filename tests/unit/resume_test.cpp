@@ -21,67 +21,66 @@
 namespace riven::testing {
 namespace {
 
-/// A model with loads that both solvers can march: the parameter goes from 1 up (statics) or from 0 up.
 struct Problem {
   std::unique_ptr<PointModel> model;
   std::unique_ptr<Constraints> constraints;
 };
 
-Body body(bool as_list) {
+Body body(bool as_list, Faces mirrored) {
   Body on_lattice = make_lattice_body(
-      sheet(14, 12, 0.05, all_edges(), {{Disc{{0.15, 0.1, 0}, 0.08}}, {}, {Disc{{-0.15, -0.1, 0}, 0.07}}}));
+      sheet(14, 12, 0.05, mirrored, {{Disc{{0.15, 0.1, 0}, 0.08}}, {}, {Disc{{-0.15, -0.1, 0}, 0.07}}}));
   return as_list ? listed(on_lattice) : on_lattice;
 }
 
-std::unique_ptr<PointModel> membrane(bool as_list) {
-  return std::make_unique<Membrane>(body(as_list), unit_laws()[1].material(), 4);
+std::unique_ptr<PointModel> membrane(bool as_list, Faces mirrored) {
+  return std::make_unique<Membrane>(body(as_list, mirrored), unit_laws()[1].material(), 4);
 }
 
-std::unique_ptr<PointModel> bond_membrane(bool as_list) {
-  return std::make_unique<BondMembrane>(body(as_list), unit_laws()[0].material(),
-                                        BondMembraneSettings{Loading::planar, false, true});
+std::unique_ptr<PointModel> bond_membrane(bool as_list, Faces mirrored) {
+  return std::make_unique<BondMembrane>(body(as_list, mirrored), unit_laws()[0].material(),
+                                        BondMembraneSettings{Loading::planar, true, true});
 }
 
 struct ModelCase {
   const char* name;
-  std::function<std::unique_ptr<PointModel>()> make;
+  std::function<std::unique_ptr<PointModel>(Faces)> make;
 };
 
 /// A new model is one more row.
 const std::vector<ModelCase>& models() {
   static const std::vector<ModelCase> all = {
-      {"Membrane", [] { return membrane(false); }},
-      {"MembraneListed", [] { return membrane(true); }},
-      {"BondMembrane", [] { return bond_membrane(false); }},
-      {"BondMembraneListed", [] { return bond_membrane(true); }},
+      {"Membrane", [](Faces mirrored) { return membrane(false, mirrored); }},
+      {"MembraneListed", [](Faces mirrored) { return membrane(true, mirrored); }},
+      {"BondMembrane", [](Faces mirrored) { return bond_membrane(false, mirrored); }},
+      {"BondMembraneListed", [](Faces mirrored) { return bond_membrane(true, mirrored); }},
   };
   return all;
 }
 
 struct SolverCase {
   const char* name;
-  double start;  // parameter at rest
+  bool in_time;
   std::function<State(Problem&, Observer&, const Snapshot*)> run;
 };
 
 const std::vector<SolverCase>& solvers() {
   static const std::vector<SolverCase> all = {
-      {"Relaxation", 1,
+      {"Relaxation", false,
        [](Problem& p, Observer& observer, const Snapshot* from) {
-         return relax(*p.model, *p.constraints, {.targets = {1.1, 1.25}, .tolerance = 1e-5}, observer, from);
+         return relax(*p.model, *p.constraints, {.targets = {1.1, 1.25}, .tolerance = 1e-4}, observer, from);
        }},
-      {"RelaxationWithCuts", 1,
+      {"RelaxationWithCuts", false,
        [](Problem& p, Observer& observer, const Snapshot* from) {
          return relax(*p.model, *p.constraints,
-                      {.targets = {1.3, 1.5}, .increment = 0.4, .tolerance = 1e-5, .max_iterations = 45},
+                      {.targets = {1.3, 1.5}, .increment = 0.4, .tolerance = 1e-5, .max_iterations = 130},
                       observer, from);
        }},
-      {"Verlet", 0,
+      {"Verlet", true,
        [](Problem& p, Observer& observer, const Snapshot* from) {
          return march(*p.model, *p.constraints, {.until = 1.3, .every = 0.5, .history_every = 0.17}, observer,
                       from);
        }},
-      {"VerletWithGivenStep", 0,
+      {"VerletWithGivenStep", true,
        [](Problem& p, Observer& observer, const Snapshot* from) {
          VelocityVerletSettings settings{.until = 0.4, .every = 0.2, .history_every = 0.03, .step = 0.0021};
          settings.initial_v.assign(p.model->dofs(), 0.1);
@@ -91,13 +90,19 @@ const std::vector<SolverCase>& solvers() {
   return all;
 }
 
-Problem make_problem(const ModelCase& model, double start) {
-  Problem problem{model.make(), nullptr};
-  const GradientPath pull = [start](double p) {
-    return Eigen::Matrix2d{{1 + (start == 0 ? 0.1 * p * p : p - start), 0}, {0, 1}};
-  };
-  problem.constraints =
-      std::make_unique<Constraints>(constrain(*problem.model, edges(pull, all_edges(), true)));
+/// Statics pull at mirrored edges; in time a column of points is pushed.
+Problem make_problem(const ModelCase& model, bool in_time) {
+  Problem problem{model.make(in_time ? Faces() : all_edges()), nullptr};
+  if (!in_time) {
+    problem.constraints = std::make_unique<Constraints>(constrain(*problem.model, planar()));
+    return problem;
+  }
+  const Body& body = problem.model->body();
+  problem.constraints = std::make_unique<Constraints>(problem.model->dofs(), 7);
+  const LoadFunction push = [](const Point&, double t) { return 0.1 * t * t; };
+  for (const std::size_t i : body.points)
+    if (body.position(i)[0] < -0.3)
+      problem.constraints->add({.slave = i, .terms = {{push, body.position(i), 0, 1, 1}}});
   return problem;
 }
 
@@ -134,19 +139,22 @@ class Resuming : public ::testing::TestWithParam<std::tuple<std::size_t, std::si
 TEST_P(Resuming, ChangesNoBit) {
   const ModelCase& model = models()[std::get<0>(GetParam())];
   const SolverCase& solver = solvers()[std::get<1>(GetParam())];
-  Problem problem = make_problem(model, solver.start);
+  Problem problem = make_problem(model, solver.in_time);
   Watch whole;
   const State expected = solver.run(problem, whole, nullptr);
   ASSERT_GT(whole.points, 20);
+  // The bond-based model needs fewer iterations, and no cuts.
+  EXPECT_EQ(std::string(solver.name) == "RelaxationWithCuts" && problem.model->conservative(),
+            !whole.remarks.empty());
   Random random(11);
-  for (int trial = 0; trial < 6; ++trial) {
+  for (int trial = 0; trial < 3; ++trial) {
     // Stops a few times on its way, first anywhere, then after few or many more safe points.
     Watch parts;
     std::optional<Snapshot> from;
     State state;
-    for (long stop = random.integer(0, static_cast<int>(whole.points) - 1);; stop += random.integer(1, 60)) {
+    for (long stop = random.integer(0, static_cast<int>(whole.points) - 1);; stop += random.integer(1, 200)) {
       parts.stop_at = stop;
-      Problem fresh = make_problem(model, solver.start);
+      Problem fresh = make_problem(model, solver.in_time);
       try {
         state = solver.run(fresh, parts, from ? &*from : nullptr);
         break;
@@ -173,7 +181,7 @@ INSTANTIATE_TEST_SUITE_P(EveryModelAndSolver, Resuming,
                          });
 
 TEST(ResumingElsewhere, RefusesASnapshotOfAnotherBody) {
-  Problem problem = make_problem(models()[0], 0);
+  Problem problem = make_problem(models()[0], true);
   Watch watch;
   watch.stop_at = 3;
   EXPECT_THROW(solvers()[2].run(problem, watch, nullptr), Stopped);
