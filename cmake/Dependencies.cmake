@@ -8,6 +8,7 @@ find_package(CLI11 REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(HDF5 REQUIRED COMPONENTS C)
 find_path(UDUNITS2_INCLUDE udunits2.h REQUIRED)
 find_library(UDUNITS2_LIBRARY udunits2 REQUIRED)
 find_path(MUPARSER_INCLUDE muParser.h REQUIRED)
@@ -17,4 +18,4 @@ add_library(riven_dependencies INTERFACE)
 target_include_directories(riven_dependencies SYSTEM INTERFACE ${UDUNITS2_INCLUDE} ${MUPARSER_INCLUDE})
 target_link_libraries(riven_dependencies INTERFACE
   OpenMP::OpenMP_CXX Eigen3::Eigen fmt::fmt spdlog::spdlog nlohmann_json::nlohmann_json CLI11::CLI11
-  tomlplusplus::tomlplusplus pugixml::pugixml ZLIB::ZLIB ${UDUNITS2_LIBRARY} ${MUPARSER_LIBRARY})
+  tomlplusplus::tomlplusplus pugixml::pugixml ZLIB::ZLIB hdf5::hdf5 ${UDUNITS2_LIBRARY} ${MUPARSER_LIBRARY})

@@ -42,6 +42,22 @@ std::string range(const TableFunction::Column& column) {
   return column.dimension == dimension::none ? span : fmt::format("{} {}", span, si_unit(column.dimension));
 }
 
+void print_initial(const char* what, const char* unit, const std::vector<double>& state,
+                   const Simulation& simulation) {
+  if (state.empty()) return;
+  std::size_t points = 0;
+  double largest = 0;
+  for (std::size_t i = 0; i < simulation.body->points.size(); ++i) {
+    double square = 0;
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(simulation.body->dimension); ++axis)
+      square += std::pow(state[simulation.entry(axis, i)], 2);
+    points += square > 0 ? 1 : 0;
+    largest = std::max(largest, std::sqrt(square));
+  }
+  fmt::print("# initial {}: {} of {} points, at most {:g} {}\n", what, points, simulation.body->points.size(),
+             largest, unit);
+}
+
 void print_tables(const Case& input) {
   for (const TableInput& table : input.tables) {
     const TableFunction& f = *table.function;
@@ -79,6 +95,8 @@ void print_model(const Simulation& simulation) {
              body.horizon / body.spacing);
   for (const std::string& line : model.describe()) fmt::print("# {}\n", line);
   print_sets(simulation);
+  print_initial("displacement", "m", simulation.initial_u, simulation);
+  print_initial("velocity", "m/s", simulation.initial_v, simulation);
 }
 
 void print_cost(const Simulation& simulation) {

@@ -13,7 +13,9 @@ struct Options {
   std::vector<std::string> set;  // --set path=value
   std::filesystem::path output;  // -o; empty: the default
   bool force = false;
-  int threads = 0;  // 0: all cores
+  bool resume = false;
+  std::string checkpoint_every;  // empty: as the case says
+  int threads = 0;               // 0: all cores
 };
 
 struct CompareOptions {

@@ -143,7 +143,11 @@ class CommandLine {
     CLI::App& command = add("run", "Run a case: riven run CASE.toml", [this] { return app::run(options_); });
     add_case(command, "Case file, or the name of a shipped case (riven cases)").required();
     command.add_option("-o,--output", options_.output, "Result folder (default: results/<case>)");
-    command.add_flag("--force", options_.force, "Replace an existing result");
+    CLI::Option* force = command.add_flag("--force", options_.force, "Replace an existing result");
+    command.add_flag("--resume", options_.resume, "Go on with a run that stopped, from its last checkpoint")
+        ->excludes(force);
+    command.add_option("--checkpoint-every", options_.checkpoint_every,
+                       "Time or steps between checkpoints: \"5 min\", \"1000 steps\" or \"never\"");
   }
 
   void add_check() {

@@ -10,15 +10,44 @@
 
 namespace riven::app {
 
+namespace {
+
+/// A word as the shell reads it.
+std::string shell_word(const std::string& word) {
+  const bool plain = word.find_first_not_of(
+                         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
+                         "_-./=:,+") == std::string::npos;
+  if (plain && !word.empty()) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string resume_command(const Options& options) {
+  std::string command = "riven run " + shell_word(options.target) + " --resume";
+  if (!options.output.empty()) command += " -o " + shell_word(options.output.string());
+  for (const std::string& set : options.set) command += " --set " + shell_word(set);
+  if (!options.checkpoint_every.empty())
+    command += " --checkpoint-every " + shell_word(options.checkpoint_every);
+  if (options.threads > 0) command += " --threads " + std::to_string(options.threads);
+  return command;
+}
+
+}  // namespace
+
 int run(const Options& options) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
   const auto file = find_case(options.target);
-  Case input = read_case(file, options.set);
+  std::vector<std::string> set = options.set;
+  if (!options.checkpoint_every.empty()) set.push_back("output.checkpoint_every=" + options.checkpoint_every);
+  Case input = read_case(file, set);
   const std::size_t unreached = options.set.empty() ? 0 : drop_unreached_expectations(input);
   if (unreached > 0) fmt::print(stderr, "{}\n", left_out(unreached));
   const Summary summary =
       run_case(input, {.folder = options.output.empty() ? default_output(file) : options.output,
                        .force = options.force,
+                       .resume = options.resume,
+                       .resume_command = resume_command(options),
                        .case_name = case_name(file)});
   if (summary.status == RunStatus::interrupted) return kInterrupted;
   return summary.status == RunStatus::finished ? kDone : kFailed;

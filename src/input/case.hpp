@@ -100,6 +100,12 @@ struct LoadInput {                           // [[load]]
   Location at;
 };
 
+struct InitialInput {                                  // [[initial]]
+  std::vector<Named> on;                               // sets; empty: the whole body
+  std::vector<ComponentInput> displacement, velocity;  // one per dimension, or none
+  Location at;
+};
+
 struct SolverInput {   // [solver]
   std::string method;  // "dynamic-relaxation" or "verlet"
   // dynamic relaxation
@@ -115,10 +121,17 @@ struct SolverInput {   // [solver]
   Location at;
 };
 
+/// How often a run writes a checkpoint: never if both are 0.
+struct CheckpointInterval {
+  double seconds = 0;  // of wall time
+  int steps = 0;       // time steps, or iterations
+};
+
 struct OutputInput {                    // [output]
   std::optional<double> every;          // s (Verlet); relaxation: at each stretch
   std::optional<double> history_every;  // s (Verlet)
   std::vector<std::string> fields = {"displacement", "damage", "strain_energy_density", "nominal_stress"};
+  CheckpointInterval checkpoint_every;
   Location at;
 };
 
@@ -173,6 +186,7 @@ struct Case {
   ModelInput model;
   std::vector<MaterialInput> materials;
   std::vector<LoadInput> loads;
+  std::vector<InitialInput> initials;
   SolverInput solver;
   OutputInput output;
   std::vector<ProbeInput> probes;

@@ -17,6 +17,7 @@ namespace {
 using kind::AnyUnit;
 using kind::Components;
 using kind::Integer;
+using kind::Interval;
 using kind::NamedTables;
 using kind::Part;
 using kind::Parts;
@@ -211,6 +212,18 @@ Format describe(MaterialInput& m, const Case& c) {
 
 // ---- load and solver ----
 
+// Naming a part twice is a slip.
+void check_parts(const std::vector<Named>& on, const Check& check) {
+  std::set<std::string> seen;
+  for (const Named& name : on)
+    if (!seen.insert(name.text).second) check.fail("on", fmt::format("names \"{}\" twice", name.text));
+}
+
+bool all_free(const std::vector<ComponentInput>& components) {
+  return std::none_of(components.begin(), components.end(),
+                      [](const ComponentInput& component) { return component.value.has_value(); });
+}
+
 Format describe(LoadInput& load) {
   return {.doc = "What is prescribed on an edge or a set.",
           .at = &load.at,
@@ -222,14 +235,34 @@ Format describe(LoadInput& load) {
                        "(dynamic relaxation) or t (Verlet)."}
                        .required()},
           .finish = [&load](const Check& check) {
-            std::set<std::string> seen;
-            for (const Named& name : load.on)
-              if (!seen.insert(name.text).second)
-                check.fail("on", fmt::format("names \"{}\" twice", name.text));
-            const auto free = [](const ComponentInput& component) { return !component.value; };
-            if (std::all_of(load.displacement.begin(), load.displacement.end(), free))
+            check_parts(load.on, check);
+            if (all_free(load.displacement))
               check.fail("displacement", "every entry is \"free\"; expected a load");
           }};
+}
+
+Format describe(InitialInput& initial, const Case& c) {
+  return {
+      .doc =
+          "The state from which a motion starts; where nothing is said, at rest and undeformed. Loads "
+          "come before it where they prescribe a displacement.",
+      .at = &initial.at,
+      .keys = {Key{"on", Parts{&initial.on}, "A set, or a list of them; the whole body unless given."},
+               Key{"displacement", Components{&initial.displacement, dimension::length, true},
+                   "One entry per direction: a length, a formula of x, y, z, or \"free\": not said here."},
+               Key{"velocity", Components{&initial.velocity, dimension::velocity, true},
+                   "The same for the velocity."}},
+      .finish = [&initial, &c](const Check& check) {
+        check_parts(initial.on, check);
+        const std::vector<std::string> edges = edge_names(c);
+        for (const Named& name : initial.on)
+          if (std::find(edges.begin(), edges.end(), name.text) != edges.end())
+            check.fail("on", fmt::format("\"{}\" is an edge, and edges have no points; expected a set, or "
+                                         "nothing for the whole body",
+                                         name.text));
+        if (all_free(initial.displacement) && all_free(initial.velocity))
+          check.fail("", "says nothing; expected displacement or velocity");
+      }};
 }
 
 void check_stretch(const std::vector<double>& stretch, const Check& check) {
@@ -315,8 +348,13 @@ Format describe(OutputInput& output, const Case& c) {
                Texts{&output.fields,
                      {"displacement", "damage", "strain_energy_density", "nominal_stress", "weight_minimum",
                       "surface_correction"}},
-               "Fields of the output states; weight_minimum: membrane, surface_correction: membrane-bond."}
-               .otherwise(R"(["displacement", "damage", "strain_energy_density", "nominal_stress"])")},
+               "Fields of the output states; weight_minimum: membrane, surface_correction: "
+               "membrane-bond."}
+               .otherwise(R"(["displacement", "damage", "strain_energy_density", "nominal_stress"])"),
+           Key{"checkpoint_every", Interval{&output.checkpoint_every},
+               "Wall time, or time steps (Verlet) or iterations (dynamic relaxation), between checkpoints, "
+               "from which `riven run --resume` goes on."}
+               .otherwise("\"5 min\"")},
       .finish = [&output, &c](const Check& check) {
         const double until = c.solver.until;
         if (output.every) check_count("every", until / *output.every, "output states", kMostStates, check);
@@ -474,35 +512,38 @@ Format describe(Case& c) {
   // The order is that of reading: what later keys need comes first.
   return {
       .doc = "A case: one text file in TOML that says all about one simulation.",
-      .keys = {Key{"title", Text{&c.title}, "What the case shows."}.required(),
-               Key{"source", Text{&c.source}, "Where the problem was published."}.otherwise("\"\""),
-               Key{"table", named_tables(c.tables, [&c](TableInput& t) { return describe(t, c); }),
-                   "Functions given by points."},
-               Key{"geometry", Table{[&c] { return describe_geometry(c); }, always}, "The body."}.required(),
-               Key{"hole", tables(c.holes, [&c](HoleInput& h, std::size_t) { return describe(h, c); }),
-                   "Holes."},
-               Key{"crack", tables(c.cracks, [&c](CrackInput& k, std::size_t) { return describe(k, c); }),
-                   "Cracks."},
-               Key{"inclusion",
-                   tables(c.inclusions, [&c](InclusionInput& i, std::size_t) { return describe(i, c); }),
-                   "Rigid inclusions."},
-               Key{"set", named_tables(c.sets, [&c](SetInput& s) { return describe(s, c); }),
-                   "Sets of points."},
-               Key{"model", Table{[&c] { return describe(c.model); }, always}, "The model."}.otherwise("{}"),
-               Key{"solver", Table{[&c] { return describe(c.solver); }, always}, "The solver."}.required(),
-               Key{"material", named_tables(c.materials, [&c](MaterialInput& m) { return describe(m, c); }),
-                   "The material."}
-                   .required(),
-               Key{"load", tables(c.loads, [](LoadInput& l, std::size_t) { return describe(l); }), "Loads."},
-               Key{"output", Table{[&c] { return describe(c.output, c); }, always}, "The output."}.otherwise(
-                   "{}"),
-               Key{"probe", tables(c.probes, [&c](ProbeInput& p, std::size_t) { return describe(p, c); }),
-                   "Probes."},
-               Key{"expect", tables(c.expects, [&c](ExpectInput& e, std::size_t) { return describe(e, c); }),
-                   "Expected results."},
-               Key{"short",
-                   Table{[&c] { return describe(c.short_run, c); }, [&c] { return c.short_run.has_value(); }},
-                   "The short variant."}},
+      .keys =
+          {Key{"title", Text{&c.title}, "What the case shows."}.required(),
+           Key{"source", Text{&c.source}, "Where the problem was published."}.otherwise("\"\""),
+           Key{"table", named_tables(c.tables, [&c](TableInput& t) { return describe(t, c); }),
+               "Functions given by points."},
+           Key{"geometry", Table{[&c] { return describe_geometry(c); }, always}, "The body."}.required(),
+           Key{"hole", tables(c.holes, [&c](HoleInput& h, std::size_t) { return describe(h, c); }), "Holes."},
+           Key{"crack", tables(c.cracks, [&c](CrackInput& k, std::size_t) { return describe(k, c); }),
+               "Cracks."},
+           Key{"inclusion",
+               tables(c.inclusions, [&c](InclusionInput& i, std::size_t) { return describe(i, c); }),
+               "Rigid inclusions."},
+           Key{"set", named_tables(c.sets, [&c](SetInput& s) { return describe(s, c); }), "Sets of points."},
+           Key{"model", Table{[&c] { return describe(c.model); }, always}, "The model."}.otherwise("{}"),
+           Key{"solver", Table{[&c] { return describe(c.solver); }, always}, "The solver."}.required(),
+           Key{"material", named_tables(c.materials, [&c](MaterialInput& m) { return describe(m, c); }),
+               "The material."}
+               .required(),
+           Key{"load", tables(c.loads, [](LoadInput& l, std::size_t) { return describe(l); }), "Loads."},
+           Key{"initial", tables(c.initials, [&c](InitialInput& i, std::size_t) { return describe(i, c); }),
+               "Initial conditions. Relaxation starts undeformed, since its states do not depend on where "
+               "it starts."}
+               .applies(method(c, verlet)),
+           Key{"output", Table{[&c] { return describe(c.output, c); }, always}, "The output."}.otherwise(
+               "{}"),
+           Key{"probe", tables(c.probes, [&c](ProbeInput& p, std::size_t) { return describe(p, c); }),
+               "Probes."},
+           Key{"expect", tables(c.expects, [&c](ExpectInput& e, std::size_t) { return describe(e, c); }),
+               "Expected results."},
+           Key{"short",
+               Table{[&c] { return describe(c.short_run, c); }, [&c] { return c.short_run.has_value(); }},
+               "The short variant."}},
       .finish = [&c](const Check& check) { check_case(c, check); }};
 }
 

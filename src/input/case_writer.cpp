@@ -72,15 +72,19 @@ class ValueText {
     return *k.to ? toml_string((*k.to)->written()) : "";
   }
   std::string operator()(const kind::Components& k) const {
-    return list(*k.to, [](const ComponentInput& c) {
+    return k.to->empty() ? "" : list(*k.to, [](const ComponentInput& c) {
       return c.value ? toml_string(c.value->written()) : toml_string("free");
     });
+  }
+  std::string operator()(const kind::Interval& k) const {
+    if (k.to->steps > 0) return toml_string(fmt::format("{} steps", k.to->steps));
+    return k.to->seconds > 0 ? with_unit(k.to->seconds, "s") : toml_string("never");
   }
   std::string operator()(const kind::Part& k) const {
     return k.to->text.empty() ? "" : toml_string(k.to->text);
   }
   std::string operator()(const kind::Parts& k) const {
-    return list(*k.to, [](const Named& name) { return toml_string(name.text); });
+    return k.to->empty() ? "" : list(*k.to, [](const Named& name) { return toml_string(name.text); });
   }
   std::string operator()(const kind::Table& k) const {
     return k.given() ? inline_table(k.open(), dimension_) : "";

@@ -73,9 +73,16 @@ struct Place {
 struct Condition {
   std::optional<Expression>* to;
 };
-/// One length per direction, a formula of x, y, z and t or stretch, or "free".
+/// One value per direction, a formula of x, y, z and, unless it belongs to the start, t or stretch; or
+/// "free".
 struct Components {
   std::vector<ComponentInput>* to;
+  Dimension dimension = dimension::length;
+  bool at_start = false;
+};
+/// "5 min", "1000 steps" or "never".
+struct Interval {
+  CheckpointInterval* to;
 };
 /// The name of an edge or a set.
 struct Part {
@@ -104,9 +111,10 @@ struct NamedTables {
 
 }  // namespace kind
 
-using Kind = std::variant<kind::Text, kind::Texts, kind::Integer, kind::Integers, kind::Quantity,
-                          kind::Quantities, kind::AnyUnit, kind::Place, kind::Condition, kind::Components,
-                          kind::Part, kind::Parts, kind::Table, kind::Tables, kind::NamedTables>;
+using Kind =
+    std::variant<kind::Text, kind::Texts, kind::Integer, kind::Integers, kind::Quantity, kind::Quantities,
+                 kind::AnyUnit, kind::Place, kind::Condition, kind::Components, kind::Interval, kind::Part,
+                 kind::Parts, kind::Table, kind::Tables, kind::NamedTables>;
 
 /// A rule that holds while another key, read before, has one of some values.
 struct When {

@@ -34,6 +34,7 @@ class Reader {
   void read_value(const kind::Place& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Condition& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Components& to, const toml::node& node, const Origin& origin);
+  void read_value(const kind::Interval& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Part& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Parts& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Table& to, const toml::node& node, const Origin& origin);
@@ -42,7 +43,8 @@ class Reader {
 
   [[nodiscard]] double quantity(const toml::node& node, const Dimension& dimension, const Range& range,
                                 const Origin& origin) const;
-  [[nodiscard]] ComponentInput component(const toml::node& node, const Origin& origin) const;
+  [[nodiscard]] ComponentInput component(const kind::Components& of, const toml::node& node,
+                                         const Origin& origin) const;
   [[nodiscard]] Named part(const toml::node& node, const Origin& origin) const;
   [[nodiscard]] Symbols symbols(std::vector<std::string> variables = {}) const;
   [[nodiscard]] Origin entry_origin(const Origin& list, std::size_t index, const toml::node& node) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -162,16 +163,20 @@ void Reader::read_value(const kind::Condition& to, const toml::node& node, const
                            origin);
 }
 
-ComponentInput Reader::component(const toml::node& node, const Origin& origin) const {
+ComponentInput Reader::component(const kind::Components& of, const toml::node& node,
+                                 const Origin& origin) const {
   if (const auto number = number_of(node, origin)) {
-    if (*number != 0) origin.fail(needs_unit(fmt::format("{}", *number), dimension::length));
+    if (*number != 0) origin.fail(needs_unit(fmt::format("{}", *number), of.dimension));
     return {Expression("0", "0", origin.at)};
   }
-  const std::string& text = string_of(node, origin, "\"free\", 0 or a length such as \"(stretch - 1)*x\"");
+  const std::string sample =
+      of.at_start ? fmt::format("10 {}", usual_unit(of.dimension)) : std::string("(stretch - 1)*x");
+  const std::string& text =
+      string_of(node, origin, fmt::format("\"free\", 0 or {} such as \"{}\"", named(of.dimension), sample));
   if (text == "free") return {};
-  const bool in_time = case_.solver.method == "verlet";
-  return {
-      parse_formula(text, dimension::length, symbols({"x", "y", "z", in_time ? "t" : "stretch"}), origin)};
+  std::vector<std::string> variables{"x", "y", "z"};
+  if (!of.at_start) variables.emplace_back(case_.solver.method == "verlet" ? "t" : "stretch");
+  return {parse_formula(text, of.dimension, symbols(std::move(variables)), origin)};
 }
 
 void Reader::read_value(const kind::Components& to, const toml::node& node, const Origin& origin) {
@@ -182,7 +187,28 @@ void Reader::read_value(const kind::Components& to, const toml::node& node, cons
     origin.fail(fmt::format("found {} entries; expected {}, one per direction", list.size(), count));
   to.to->clear();
   for (std::size_t i = 0; i < count; ++i)
-    to.to->push_back(component(list[i], entry_origin(origin, i, list[i])));
+    to.to->push_back(component(to, list[i], entry_origin(origin, i, list[i])));
+}
+
+void Reader::read_value(const kind::Interval& to, const toml::node& node, const Origin& origin) {
+  const std::string expected = "\"5 min\", \"1000 steps\" or \"never\"";
+  const std::string& text = string_of(node, origin, expected);
+  *to.to = {};
+  if (text == "never") return;
+  const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+  const std::string unit = text.substr(std::min(text.find_first_not_of(' ', digits), text.size()));
+  if (unit == "steps" || unit == "step") {
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + digits, to.to->steps);
+    if (problem != std::errc{} || to.to->steps < 1)
+      origin.fail(fmt::format("found \"{}\"; expected a whole number of steps from 1 to {}", text,
+                              std::numeric_limits<int>::max()));
+    return;
+  }
+  try {
+    to.to->seconds = quantity(node, dimension::time, positive, origin);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}; for checkpoints {}", error.what(), expected));
+  }
 }
 
 Named Reader::part(const toml::node& node, const Origin& origin) const {

@@ -53,6 +53,9 @@ struct ValueText {
   std::string operator()(const kind::Components&) const {
     return "list, per direction a formula or `\"free\"`";
   }
+  std::string operator()(const kind::Interval&) const {
+    return "`\"5 min\"`, `\"1000 steps\"` or `\"never\"`";
+  }
   std::string operator()(const kind::Part&) const { return "name"; }
   std::string operator()(const kind::Parts&) const { return "name or list of names"; }
   std::string operator()(const kind::Table&) const { return "table"; }

@@ -62,6 +62,7 @@ struct ValueSchema {
   Json operator()(const kind::Components&) const {
     return list_schema({{"anyOf", {Json{{"const", 0}}, Json{{"type", "string"}}}}}, 1, 3);
   }
+  Json operator()(const kind::Interval&) const { return {{"type", "string"}}; }
   Json operator()(const kind::Part&) const { return {{"type", "string"}}; }
   Json operator()(const kind::Parts&) const {
     const Json name{{"type", "string"}};

@@ -147,7 +147,7 @@ constexpr std::array named_dimensions = std::to_array<NamedDimension>({
     {{.kilogram = 1}, "a mass", "kg", "kg"},
     {{.kelvin = 1}, "a temperature", "K", "K"},
     {{.second = -1}, "a rate", "1/s", "/s"},
-    {{.metre = 1, .second = -1}, "a velocity", "m/s", "m/s"},
+    {dimension::velocity, "a velocity", "m/s", "m/s"},
     {{.metre = 1, .second = -2, .kilogram = 1}, "a force", "N", "N"},
     {{.metre = 2, .second = -2, .kilogram = 1}, "an energy", "J", "J"},
     {{.metre = 2, .second = -3, .kilogram = 1}, "a power", "W", "W"},

@@ -5,9 +5,11 @@
 #include <functional>
 #include <limits>
 #include <span>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
+#include "base/snapshot.hpp"
 #include "geometry/shape.hpp"
 
 namespace riven {
@@ -77,7 +79,20 @@ class Constraints {
 
   [[nodiscard]] AffineIncrement affine_increment(double from, double to) const;
 
+  /// The values of the last `set_parameter` and `reduce`.
+  void save(Snapshot& to) const { each_member(*this, to.saving()); }
+  void restore(const Snapshot& from) { each_member(*this, from.restoring()); }
+
  private:
+  template <class Self, class Each>
+  static void each_member(Self& self, const Each& each) {
+    each("constraints.offset", self.offset_);
+    each("constraints.external", self.external_);
+    each("constraints.reaction_norm", self.reaction_norm_);
+    for (std::size_t n = 0; n < self.reaction_.size(); ++n)
+      each("constraints.reaction." + std::to_string(n), self.reaction_[n]);
+  }
+
   std::vector<Constraint> prescribed_;  // without master: applied first, reduced last
   std::vector<Constraint> mirrored_;
   std::unordered_map<std::size_t, std::size_t> prescribed_at_;  // number in prescribed_ by its slave

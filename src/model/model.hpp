@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/snapshot.hpp"
 #include "geometry/shape.hpp"
 
 namespace riven {
@@ -78,6 +79,10 @@ class Model {
 
   /// What might carry a body past a load that it does not stand, for messages.
   [[nodiscard]] virtual std::string remedies() const { return "a finer lattice"; }
+
+  /// What the model remembers of the states before, such as broken bonds; a model without memory keeps these.
+  virtual void save(Snapshot&) const {}
+  virtual void restore(const Snapshot&) {}
 
   /// What follows from the case, a line each: constants of the material, kinds of points.
   [[nodiscard]] virtual std::vector<std::string> describe() const = 0;

@@ -13,6 +13,19 @@ namespace riven {
 
 void Collection::add(double value, const std::filesystem::path& file) {
   entries_.push_back({value, file});
+  write();
+}
+
+void Collection::replace(std::vector<CollectionEntry> entries) {
+  entries_ = std::move(entries);
+  // A run that has no state yet has no series.
+  if (entries_.empty())
+    std::filesystem::remove(path_);
+  else
+    write();
+}
+
+void Collection::write() const {
   pugi::xml_document document;
   auto root = document.append_child("VTKFile");
   root.append_attribute("type") = "Collection";

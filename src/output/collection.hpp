@@ -20,8 +20,12 @@ class Collection {
 
   /// Adds a state; `file` is relative to the collection's folder. Throws RunError when it cannot be written.
   void add(double value, const std::filesystem::path& file);
+  /// Starts with these states, instead of those that the file has.
+  void replace(std::vector<CollectionEntry> entries);
 
  private:
+  void write() const;
+
   std::filesystem::path path_;
   std::vector<CollectionEntry> entries_;
 };

@@ -23,6 +23,17 @@ HistoryWriter::HistoryWriter(const std::filesystem::path& path, Parameter parame
   write_line(line);
 }
 
+HistoryWriter::HistoryWriter(const std::filesystem::path& path, std::size_t columns, std::uintmax_t bytes)
+    : path_(path.string()), columns_(columns), bytes_(bytes) {
+  std::error_code problem;
+  const std::uintmax_t there = std::filesystem::file_size(path, problem);
+  if (problem || there < bytes)
+    throw InputError({path_},
+                     fmt::format("has lost rows since the run stopped: expected {} bytes at least", bytes));
+  std::filesystem::resize_file(path, bytes);
+  stream_.open(path, std::ios::binary | std::ios::app);
+}
+
 void HistoryWriter::add(double parameter, std::span<const double> values) {
   if (values.size() != columns_) {
     throw std::invalid_argument(
@@ -36,6 +47,7 @@ void HistoryWriter::add(double parameter, std::span<const double> values) {
 void HistoryWriter::write_line(const std::string& line) {
   stream_ << line << '\n' << std::flush;
   if (!stream_) throw RunError(fmt::format("cannot write {}: is the disk full?", path_));
+  bytes_ += line.size() + 1;
 }
 
 History History::read(const std::filesystem::path& path) {

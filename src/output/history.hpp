@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <span>
@@ -26,9 +27,15 @@ class HistoryWriter {
   HistoryWriter(const std::filesystem::path& path, Parameter parameter,
                 const std::vector<HistoryColumn>& columns);
 
+  /// Goes on with a history, of which only the first bytes are kept. Throws InputError when it has fewer.
+  HistoryWriter(const std::filesystem::path& path, std::size_t columns, std::uintmax_t bytes);
+
   /// Adds a row. Throws std::invalid_argument when the number of values is not that of the columns, RunError
   /// when the row cannot be written.
   void add(double parameter, std::span<const double> values);
+
+  /// Length of the file.
+  [[nodiscard]] std::uintmax_t bytes() const { return bytes_; }
 
  private:
   void write_line(const std::string& line);
@@ -36,6 +43,7 @@ class HistoryWriter {
   std::string path_;
   std::ofstream stream_;
   std::size_t columns_;
+  std::uintmax_t bytes_ = 0;
 };
 
 /// A history read back.

@@ -36,6 +36,9 @@ class Progress {
   /// Cheap enough to be called after every iteration or time step.
   void update(const ProgressState& state);
 
+  /// Counts the time that a resumed run has taken before (s).
+  void add_elapsed(double seconds) { start_ -= seconds; }
+
   /// Takes the rewritten line away, so that a message can stand there; the next update brings it back.
   void clear();
 

@@ -1,8 +1,13 @@
 #include "output/result_folder.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
 #include <system_error>
 #include <utility>
 
@@ -25,6 +30,17 @@ bool holds_working_folder(const fs::path& folder) {
   return mismatch == folder.end();
 }
 
+/// Descriptor of a folder that other runs respect as long as it is open. Throws InputError when another one
+/// holds it.
+int locked(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  // Where the file system knows no locks there are none.
+  if (descriptor < 0 || ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
+    return descriptor;
+  ::close(descriptor);
+  throw InputError(fmt::format("{}: a run writes there; wait for its end, or stop it", folder.string()));
+}
+
 void check_free(const fs::path& folder, bool force) {
   if (!fs::exists(folder)) return;
   const std::string name = folder.string();
@@ -42,14 +58,27 @@ void check_free(const fs::path& folder, bool force) {
                     "remove it, name another folder",
                     name));
   }
+  if (const int descriptor = locked(folder); descriptor >= 0) ::close(descriptor);
 }
 
 /// A hidden place for `target` in the nearest folder that exists, so that a failure leaves no parents behind
 /// and the move into place is a rename within one disk.
-fs::path hidden_beside(const fs::path& target, const char* purpose) {
+fs::path hidden_beside(const fs::path& target, const std::string& number) {
   fs::path parent = target.parent_path();
   while (!fs::exists(parent)) parent = parent.parent_path();
-  return parent / fmt::format(".{}.{}.{}", target.filename().string(), purpose, ::getpid());
+  return parent / fmt::format(".{}.new.{}", target.filename().string(), number);
+}
+
+/// Removes the hidden folders of runs that were killed while they prepared them.
+void remove_leftovers(const fs::path& target) {
+  const fs::path pattern = hidden_beside(target, "");
+  for (const auto& entry : fs::directory_iterator(pattern.parent_path())) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(pattern.filename().string())) continue;
+    const int process = std::atoi(name.c_str() + pattern.filename().string().size());
+    std::error_code ignored;
+    if (process > 0 && ::kill(process, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), ignored);
+  }
 }
 
 void write_text(const fs::path& path, const std::string& text) {
@@ -58,8 +87,14 @@ void write_text(const fs::path& path, const std::string& text) {
   file.commit();
 }
 
+/// Moves a folder into place. One that is there already takes its place, in the same moment where the file
+/// system can do so.
 void move_folder(const fs::path& from, const fs::path& to) {
   std::error_code problem;
+  if (fs::exists(to)) {
+    if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) return;
+    if (errno == EINVAL || errno == ENOSYS) fs::remove_all(to, problem);
+  }
   fs::rename(from, to, problem);
   if (problem)
     throw RunError(fmt::format("cannot create the result folder {}: {}", to.string(), problem.message()));
@@ -74,9 +109,11 @@ ResultFolder ResultFolder::create(const fs::path& path, bool force) {
     if (!folder.target_.has_filename()) folder.target_ = folder.target_.parent_path();
     folder.force_ = force;
     check_free(folder.target_, force);
-    folder.current_ = hidden_beside(folder.target_, "new");
+    remove_leftovers(folder.target_);
+    folder.current_ = hidden_beside(folder.target_, std::to_string(::getpid()));
     fs::remove_all(folder.current_);  // of a killed run whose process id came round again
     fs::create_directories(folder.current_ / "fields");
+    folder.lock_ = locked(folder.current_);
   } catch (const fs::filesystem_error& error) {
     throw InputError(
         fmt::format("{}: cannot create a result folder there: {}", path.string(), error.code().message()));
@@ -97,13 +134,21 @@ ResultFolder ResultFolder::open(const fs::path& path) {
   return folder;
 }
 
+ResultFolder ResultFolder::go_on(const fs::path& path) {
+  ResultFolder folder = open(path);
+  folder.lock_ = locked(folder.current_);
+  return folder;
+}
+
 ResultFolder::ResultFolder(ResultFolder&& other) noexcept
     : target_(std::move(other.target_)),
       current_(std::exchange(other.current_, {})),
       force_(other.force_),
-      published_(std::exchange(other.published_, true)) {}
+      published_(std::exchange(other.published_, true)),
+      lock_(std::exchange(other.lock_, -1)) {}
 
 ResultFolder::~ResultFolder() {
+  if (lock_ >= 0) ::close(lock_);
   if (published_ || current_.empty()) return;
   std::error_code ignored;
   fs::remove_all(current_, ignored);
@@ -115,18 +160,21 @@ void ResultFolder::publish(const std::string& case_text, const std::string& reso
   check_free(target_, force_);
   std::error_code problem;
   fs::create_directories(target_.parent_path(), problem);  // what failed here shows in the rename
-  const fs::path old = hidden_beside(target_, "old");
-  const bool replaces = fs::exists(target_);
-  if (replaces) move_folder(target_, old);
-  try {
-    move_folder(current_, target_);
-  } catch (const RunError&) {
-    if (replaces) fs::rename(old, target_, problem);
-    throw;
-  }
+  move_folder(current_, target_);
+  fs::remove_all(current_, problem);  // an older result
   current_ = target_;
   published_ = true;
-  if (replaces) fs::remove_all(old, problem);
+}
+
+void ResultFolder::cut_off(int states) const {
+  const auto clean = [](const fs::path& folder, const auto& unwanted) {
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.path().extension() == ".tmp" || unwanted(entry.path())) fs::remove(entry.path());
+  };
+  clean(current_, [](const fs::path&) { return false; });
+  clean(current_ / "fields", [&](const fs::path& file) {
+    return file.extension() == ".vtu" && std::atoi(file.stem().c_str()) >= states;
+  });
 }
 
 fs::path ResultFolder::field(int state) {

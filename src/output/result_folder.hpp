@@ -12,13 +12,16 @@ class ResultFolder {
  public:
   /// Prepares the folder `path`. Throws InputError when it exists and `force` is not given, when `force`
   /// would remove something that is not a result of Riven (a folder with `case.toml` and `resolved.toml`, or
-  /// an empty one), or when it cannot be created.
+  /// an empty one) or to which a run writes, or when it cannot be created.
   static ResultFolder create(const std::filesystem::path& path, bool force);
 
   /// An existing result. Throws InputError when there is none at `path`.
   static ResultFolder open(const std::filesystem::path& path);
 
-  /// Removes the prepared folder if it was not published.
+  /// The same, to write to it. Throws InputError when another run does.
+  static ResultFolder go_on(const std::filesystem::path& path);
+
+  /// Removes the prepared folder if it was not published. Lets others write to it.
   ~ResultFolder();
   ResultFolder(ResultFolder&& other) noexcept;
   ResultFolder(const ResultFolder&) = delete;
@@ -39,6 +42,9 @@ class ResultFolder {
   [[nodiscard]] std::filesystem::path summary() const { return current_ / "summary.json"; }
   [[nodiscard]] std::filesystem::path history() const { return current_ / "history.csv"; }
   [[nodiscard]] std::filesystem::path collection() const { return current_ / "fields.pvd"; }
+  [[nodiscard]] std::filesystem::path checkpoint() const { return current_ / "checkpoint.h5"; }
+  /// Removes what a killed run left half written, and the field files from output state `states` on.
+  void cut_off(int states) const;
   /// Field file of an output state, counted from 0, relative to the folder: "fields/0000.vtu".
   [[nodiscard]] static std::filesystem::path field(int state);
 
@@ -49,6 +55,7 @@ class ResultFolder {
   std::filesystem::path current_;
   bool force_ = false;
   bool published_ = false;
+  int lock_ = -1;  // descriptor of the folder that keeps other runs out
 };
 
 }  // namespace riven

@@ -85,22 +85,46 @@ void Pmb::make_lattice_kernel(const LatticeBonds& on) {
     lattice_.stencil.push_back(
         {stencil.shift[k], stencil.bond[k], stencil.length[k], 1 / stencil.length[k], limit * limit});
   }
-  std::size_t intact = 0;
-  for (std::size_t block = 0; block < body().size() / kLanes; ++block) {
-    const std::uint8_t* masks = on.bonds.masks(block);
-    const auto all = [&](std::uint8_t value) {
-      return std::all_of(masks, masks + stencil.size(), [value](std::uint8_t mask) { return mask == value; });
-    };
-    lattice_.blocks.push_back(all(0) ? BlockKind::empty : all(0xff) ? BlockKind::intact : BlockKind::partial);
-    intact += lattice_.blocks.back() == BlockKind::intact ? 1 : 0;
-  }
-  lattice_.masks = std::get<LatticeBonds>(own_body().bonds).bonds.masks(0);
+  lattice_.masks = own_masks().data();
+  lattice_.blocks.resize(body().size() / kLanes);
+  sort_blocks();
   lattice_.weight = weight_.data();
   lattice_.stiffness = micromodulus_;
   const double first = weight_[body().points.front()];
   if (body().ghosts.empty() && std::all_of(body().points.begin(), body().points.end(),
                                            [&](std::size_t i) { return weight_[i] == first; }))
     lattice_.uniform_weight = first;
+}
+
+const std::vector<std::uint8_t>& Pmb::own_masks() const {
+  if (const LatticeBonds* on = body().on_lattice()) return on->bonds.bytes();
+  return std::get<ListedBonds>(body().bonds).masks;
+}
+
+std::vector<std::uint8_t>& Pmb::own_masks() {
+  if (auto* on = std::get_if<LatticeBonds>(&own_body().bonds)) return on->bonds.bytes();
+  return std::get<ListedBonds>(own_body().bonds).masks;
+}
+
+/// Finds the kind of every block from its bits.
+void Pmb::sort_blocks() {
+  const std::size_t count = lattice_.stencil.size();
+  for (std::size_t block = 0; block < lattice_.blocks.size(); ++block) {
+    const std::uint8_t* masks = lattice_.masks + block * count;
+    const auto all = [&](std::uint8_t value) {
+      return std::all_of(masks, masks + count, [value](std::uint8_t mask) { return mask == value; });
+    };
+    lattice_.blocks[block] = all(0) ? BlockKind::empty : all(0xff) ? BlockKind::intact : BlockKind::partial;
+  }
+}
+
+void Pmb::save(Snapshot& to) const {
+  each_member(*this, to.saving());
+}
+
+void Pmb::restore(const Snapshot& from) {
+  each_member(*this, from.restoring());
+  sort_blocks();
 }
 
 void Pmb::make_list_kernel(const ListedBonds& list) {
@@ -122,7 +146,7 @@ void Pmb::make_list_kernel(const ListedBonds& list) {
     }
   list_.begin = list.begin.data();
   list_.neighbour = list.neighbour.data();
-  list_.masks = std::get<ListedBonds>(own_body().bonds).masks.data();
+  list_.masks = own_masks().data();
   list_.limit2 = (1 + settings_.critical_stretch) * (1 + settings_.critical_stretch);
   list_.stiffness = micromodulus_;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <limits>
 
+#include "base/snapshot.hpp"
 #include "peridynamics/pmb_kernels.hpp"
 #include "peridynamics/point_model.hpp"
 
@@ -39,6 +40,8 @@ class Pmb final : public PointModel {
   void stiffness_bound(std::span<const double> u, std::span<double> bound) override;
   [[nodiscard]] std::optional<Breakdown> inspect(std::span<const double> u) override;
   [[nodiscard]] std::vector<ModelField> fields(std::span<const double> u) override;
+  void save(Snapshot& to) const override;
+  void restore(const Snapshot& from) override;
   [[nodiscard]] std::vector<std::string> describe() const override;
   [[nodiscard]] std::size_t bytes() const override;
 
@@ -60,6 +63,15 @@ class Pmb final : public PointModel {
   void for_each_pull(std::size_t point, std::span<const double> u, const Visit& visit) const;
   [[nodiscard]] double full_volume(std::size_t point) const;
   [[nodiscard]] double family_moment() const;
+  template <class Self, class Each>
+  static void each_member(Self& self, const Each& each) {
+    each("pmb.masks", self.own_masks());
+    each("pmb.dissipated", self.dissipated_);
+  }
+  /// The bits of the bonds: on a lattice or in a list.
+  [[nodiscard]] const std::vector<std::uint8_t>& own_masks() const;
+  [[nodiscard]] std::vector<std::uint8_t>& own_masks();
+  void sort_blocks();
   void make_lattice_kernel(const LatticeBonds& on);
   void make_list_kernel(const ListedBonds& list);
   void look_at(std::span<const double> u, std::span<double> out);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "base/machine.hpp"
 #include "body/lattice_body.hpp"
@@ -347,6 +348,78 @@ class LoadBuilder {
   std::vector<bool> loaded_;  // entries that a set's load has taken
 };
 
+/// Fills the initial state of the body's points. What is prescribed comes from the loads when the run starts.
+class InitialBuilder {
+ public:
+  InitialBuilder(Simulation& simulation, std::size_t dofs)
+      : simulation_(simulation), displaced_(dofs, false), moving_(dofs, false) {}
+
+  void build() {
+    for (const InitialInput& initial : simulation_.input.initials) {
+      check_inclusions(initial);
+      for (const std::vector<std::size_t>& points : points_of(initial)) {
+        fill(initial, "displacement", initial.displacement, points, simulation_.initial_u, displaced_);
+        fill(initial, "velocity", initial.velocity, points, simulation_.initial_v, moving_);
+      }
+    }
+  }
+
+ private:
+  /// An inclusion would stay behind the body around it.
+  void check_inclusions(const InitialInput& initial) const {
+    const auto& inclusions = simulation_.input.inclusions;
+    const bool free = std::any_of(inclusions.begin(), inclusions.end(),
+                                  [](const InclusionInput& inclusion) { return inclusion.motion == "free"; });
+    if (initial.on.empty() && free)
+      throw InputError(
+          initial.at,
+          "initial: the body has inclusions that are free to move, and they start at rest; expected "
+          "`on` with the points that do not, or inclusions with motion = \"fixed\"");
+  }
+
+  [[nodiscard]] std::vector<std::vector<std::size_t>> points_of(const InitialInput& initial) const {
+    std::vector<std::vector<std::size_t>> lists;
+    for (const Named& on : initial.on) lists.push_back(simulation_.set(on.text).points);
+    if (!lists.empty()) return lists;
+    lists.emplace_back(simulation_.body->points.size());
+    std::iota(lists.front().begin(), lists.front().end(), std::size_t{0});
+    return lists;
+  }
+
+  void fill(const InitialInput& initial, const char* what, const std::vector<ComponentInput>& components,
+            const std::vector<std::size_t>& points, std::vector<double>& state, std::vector<bool>& given) {
+    for (std::size_t axis = 0; axis < components.size(); ++axis) {
+      if (!components[axis].value) continue;
+      state.resize(given.size());
+      for (const std::size_t point : points) {
+        const std::size_t entry = simulation_.entry(axis, point);
+        if (given[entry])
+          throw InputError(
+              initial.at,
+              fmt::format("initial: component {} of the {} is given twice for the point at ({:.4g}, "
+                          "{:.4g}, {:.4g}) m; expected sets without common points, or other "
+                          "components \"free\"",
+                          axis, what, place(point)[0], place(point)[1], place(point)[2]));
+        given[entry] = true;
+        state[entry] = (*components[axis].value)(Variables{.position = place(point)});
+        if (!std::isfinite(state[entry]))
+          throw InputError(
+              initial.at,
+              fmt::format("initial: component {} of the {} is no finite number at ({:.4g}, {:.4g}, "
+                          "{:.4g}) m",
+                          axis, what, place(point)[0], place(point)[1], place(point)[2]));
+      }
+    }
+  }
+
+  [[nodiscard]] Point place(std::size_t point) const {
+    return simulation_.body->position(simulation_.body->points[point]);
+  }
+
+  Simulation& simulation_;
+  std::vector<bool> displaced_, moving_;  // entries that are given already
+};
+
 }  // namespace
 
 std::optional<std::size_t> Simulation::face(const std::string& name) {
@@ -377,6 +450,7 @@ Simulation build_simulation(const Case& input) {
   simulation.body = &model->body();
   simulation.constraints = std::make_unique<Constraints>(model->dofs(), kFaces + 1);
   LoadBuilder(simulation, *model).build();
+  InitialBuilder(simulation, model->dofs()).build();
   simulation.model = std::move(model);
   return simulation;
 }

@@ -98,7 +98,8 @@ void check_step(const Simulation& simulation) {
   constexpr double kMostSteps = 1e9;
   const SolverInput& solver = simulation.input.solver;
   if (simulation.parameter != Parameter::time) return;
-  std::vector<double> start(simulation.model->dofs(), 0.0);
+  std::vector<double> start = simulation.initial_u;
+  start.resize(simulation.model->dofs());
   simulation.constraints->set_parameter(0);
   simulation.constraints->apply(start);
   const double limit = stable_step(*simulation.model, *simulation.constraints, start);
@@ -339,7 +340,8 @@ std::vector<std::string> warnings(const Simulation& simulation) {
         fmt::format("the model \"{}\" has no energy and holds for the loading \"{}\" only: it is kept for "
                     "comparison; kind = \"membrane\" is the one to use",
                     simulation.input.model.kind, simulation.input.model.loading));
-  if (simulation.input.loads.empty()) list.emplace_back("there is no load: nothing will move");
+  if (simulation.input.loads.empty() && simulation.input.initials.empty())
+    list.emplace_back("there is no load: nothing will move");
   if (simulation.input.probes.empty())
     list.emplace_back("there is no probe: history.csv and the metrics will be empty");
   if (jumps_at_start(simulation))

@@ -4,24 +4,117 @@
 
 #include <algorithm>
 
+#include "output/atomic_file.hpp"
 #include "output/vtu.hpp"
 #include "simulation/interrupt.hpp"
+#include "simulation/resume.hpp"
 
 namespace riven {
 
+namespace {
+
+constexpr const char* kHistoryBytes = "recorder.history_bytes";
+
+HistoryWriter open_history(const ResultFolder& folder, Parameter parameter, const Probes& probes,
+                           const Checkpoint* from) {
+  if (from == nullptr) return {folder.history(), parameter, probes.columns()};
+  std::uintmax_t bytes = 0;
+  from->state.restoring()(kHistoryBytes, bytes);
+  return {folder.history(), probes.columns().size(), bytes};
+}
+
+double seconds_since(Recorder::Clock::time_point start) {
+  return std::chrono::duration<double>(Recorder::Clock::now() - start).count();
+}
+
+}  // namespace
+
 Recorder::Recorder(const Simulation& simulation, const Probes& probes, const ResultFolder& folder,
-                   Progress& screen, Log& log)
+                   Progress& screen, Log& log, Clock::time_point start, const Checkpoint* from)
     : simulation_(simulation),
       probes_(probes),
       folder_(folder),
       screen_(screen),
       log_(log),
-      history_(folder.history(), simulation.parameter, probes.columns()),
-      collection_(folder.collection()) {}
+      history_(open_history(folder, simulation.parameter, probes, from)),
+      collection_(folder.collection()),
+      start_(start),
+      last_checkpoint_(Clock::now()),
+      case_values_(decisive_values(simulation.input)) {
+  if (from != nullptr) go_on(from->state);
+}
+
+template <class Self, class Each>
+void Recorder::each_member(Self& self, const Each& each) {
+  State::each_member(self.last_, "recorder.last", each);
+  each("recorder.last_values", self.last_values_);
+  each("recorder.evaluations", self.evaluations_);
+  each("recorder.last_written", self.last_written_);
+  each("recorder.states", self.state_values_);
+}
+
+void Recorder::go_on(const Snapshot& from) {
+  const auto each = from.restoring();
+  each_member(*this, each);
+  each("recorder.wall_s", wall_before_s_);
+  screen_.add_elapsed(wall_before_s_);
+  const std::vector<double> rows = std::exchange(state_values_, {});
+  const std::size_t width = 1 + probes_.columns().size();
+  std::vector<CollectionEntry> files;
+  for (std::size_t begin = 0; begin + width <= rows.size(); begin += width) {
+    files.push_back({rows[begin], ResultFolder::field(static_cast<int>(states_.size()))});
+    const auto first = rows.begin() + static_cast<std::ptrdiff_t>(begin);
+    add_state(*first, {first + 1, first + static_cast<std::ptrdiff_t>(width)});
+  }
+  // In this order a killed program leaves a folder that can be read, and resumed again.
+  std::filesystem::remove(folder_.summary());
+  collection_.replace(std::move(files));
+  folder_.cut_off(static_cast<int>(states_.size()));
+}
+
+void Recorder::safe_point(const std::function<Snapshot()>& take) {
+  const CheckpointInterval& every = simulation_.input.output.checkpoint_every;
+  ++steps_since_checkpoint_;
+  const bool due = (every.steps > 0 && steps_since_checkpoint_ >= every.steps) ||
+                   (every.seconds > 0 && seconds_since(last_checkpoint_) >= every.seconds);
+  const bool stop = interrupt_requested();
+  if (!due && !stop) return;
+  try {
+    write_checkpoint(take());
+  } catch (const RunError& problem) {
+    log_.warning(fmt::format("{} The run has no newer checkpoint", problem.what()));
+  }
+  steps_since_checkpoint_ = 0;
+  last_checkpoint_ = Clock::now();
+  if (stop) throw Interrupted();
+}
+
+void Recorder::write_checkpoint(Snapshot state) {
+  bring_results_to_disk();
+  const auto each = state.saving();
+  each_member(*this, each);
+  each(kHistoryBytes, history_.bytes());
+  each("recorder.wall_s", wall_s());
+  riven::write_checkpoint(folder_.checkpoint(), {.case_values = case_values_, .state = std::move(state)});
+  log_.detail(fmt::format("checkpoint at {} {:.6g}", name(simulation_.parameter), last_.parameter));
+}
+
+/// A checkpoint counts on the files that were written before it.
+void Recorder::bring_results_to_disk() {
+  sync_to_disk(folder_.history());
+  if (states_on_disk_ == states_.size()) return;
+  for (; states_on_disk_ < states_.size(); ++states_on_disk_)
+    sync_to_disk(folder_.path() / ResultFolder::field(static_cast<int>(states_on_disk_)));
+  sync_to_disk(folder_.collection());
+  sync_to_disk(folder_.path() / "fields");
+}
+
+double Recorder::wall_s() const {
+  return wall_before_s_ + seconds_since(start_);
+}
 
 void Recorder::progressed(const SolverProgress& progress) {
   evaluations_ = progress.evaluations;
-  if (interrupt_requested()) throw Interrupted();
   ProgressState state;
   state.parameter = simulation_.parameter;
   state.value = progress.parameter;
@@ -41,9 +134,8 @@ void Recorder::reached(const State& state, const Constraints& constraints, bool 
   last_ = state;
   evaluations_ = state.evaluations;
   last_written_ = false;
-  const std::vector<double> values = probes_.evaluate(state, constraints);
-  metrics_ = probes_.metrics(values);
-  history_.add(state.parameter, values);
+  last_values_ = probes_.evaluate(state, constraints);
+  history_.add(state.parameter, last_values_);
   log_.detail(fmt::format("{} {:.6g}: {} force evaluations, strain energy {:.8g} J, energy balance {:.2e}",
                           name(simulation_.parameter), state.parameter, state.evaluations,
                           state.energy.strain, state.energy.error()));
@@ -72,8 +164,14 @@ void Recorder::write_fields() {
   const auto file = ResultFolder::field(static_cast<int>(states_.size()));
   write_vtu(folder_.path() / file, cloud);
   collection_.add(last_.parameter, file);
-  states_.push_back({last_.parameter, metrics_});
+  add_state(last_.parameter, last_values_);
   last_written_ = true;
+}
+
+void Recorder::add_state(double parameter, const std::vector<double>& values) {
+  states_.push_back({parameter, probes_.metrics(values)});
+  state_values_.push_back(parameter);
+  state_values_.insert(state_values_.end(), values.begin(), values.end());
 }
 
 void Recorder::keep_last() {
@@ -83,7 +181,8 @@ void Recorder::keep_last() {
 Summary Recorder::summary() const {
   Summary summary;
   summary.parameter = simulation_.parameter;
-  summary.metrics = metrics_;
+  if (!last_values_.empty()) summary.metrics = probes_.metrics(last_values_);
+  summary.timing.wall_s = wall_s();
   summary.states = states_;
   const EnergyBalance& energy = last_.energy;
   summary.energy = {energy.kinetic, energy.strain, energy.dissipated, energy.external_work, energy.error()};

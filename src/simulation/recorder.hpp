@@ -1,7 +1,9 @@
 #pragma once
 
+#include <chrono>
 #include <optional>
 
+#include "output/checkpoint.hpp"
 #include "output/collection.hpp"
 #include "output/log.hpp"
 #include "output/progress.hpp"
@@ -19,13 +21,18 @@ class Interrupted : public std::runtime_error {
 /// Writes what a run reaches to its result folder as it comes, and shows how far it is.
 class Recorder final : public Observer {
  public:
+  using Clock = std::chrono::steady_clock;
+  /// `start`: of this program's work on the run. With a checkpoint the files go on behind it: what was
+  /// written later is cut off.
   Recorder(const Simulation& simulation, const Probes& probes, const ResultFolder& folder, Progress& screen,
-           Log& log);
+           Log& log, Clock::time_point start, const Checkpoint* from);
 
-  /// Throws Interrupted when SIGINT or SIGTERM has come.
   void progressed(const SolverProgress& progress) override;
   void reached(const State& state, const Constraints& constraints, bool output) override;
   void remarked(const std::string& message) override;
+  /// Writes a checkpoint when it is time. Throws Interrupted, with a checkpoint written, when SIGINT or
+  /// SIGTERM has come.
+  void safe_point(const std::function<Snapshot()>& take) override;
 
   /// Writes the last state that was reached, if it is not written yet: what a failed run leaves.
   void keep_last();
@@ -34,8 +41,16 @@ class Recorder final : public Observer {
   [[nodiscard]] const State& last() const { return last_; }
   /// Force evaluations so far, those of an unfinished step included.
   [[nodiscard]] long evaluations() const { return evaluations_; }
+  /// Wall time (s) so far, of the programs before a resumption too.
+  [[nodiscard]] double wall_s() const;
 
  private:
+  template <class Self, class Each>
+  static void each_member(Self& self, const Each& each);
+  void go_on(const Snapshot& from);
+  void write_checkpoint(Snapshot state);
+  void bring_results_to_disk();
+  void add_state(double parameter, const std::vector<double>& values);
   void write_fields();
 
   const Simulation& simulation_;
@@ -46,10 +61,18 @@ class Recorder final : public Observer {
   HistoryWriter history_;
   Collection collection_;
   State last_;
+  std::vector<double> last_values_;  // of the probes
   long evaluations_ = 0;
   bool last_written_ = true;
   std::vector<SummaryState> states_;
-  Metrics metrics_;  // of the last state
+  std::vector<double>
+      state_values_;  // what they were made of: of each the parameter, then the probes' values
+
+  Clock::time_point start_, last_checkpoint_;
+  double wall_before_s_ = 0;  // in the programs before
+  long steps_since_checkpoint_ = 0;
+  std::size_t states_on_disk_ = 0;
+  std::map<std::string, std::string> case_values_;
 };
 
 }  // namespace riven

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <omp.h>
 
-#include <chrono>
 #include <fstream>
 #include <iostream>
 #include <new>
@@ -15,6 +14,7 @@
 #include "simulation/interrupt.hpp"
 #include "simulation/preflight.hpp"
 #include "simulation/recorder.hpp"
+#include "simulation/resume.hpp"
 #include "solver/dynamic_relaxation.hpp"
 #include "solver/velocity_verlet.hpp"
 
@@ -22,20 +22,22 @@ namespace riven {
 
 namespace {
 
-State solve(const Simulation& simulation, Observer& observer) {
+State solve(const Simulation& simulation, Observer& observer, const Snapshot* from) {
   const SolverInput& in = simulation.input.solver;
   if (simulation.parameter == Parameter::time) {
     const OutputInput& out = simulation.input.output;
     VelocityVerletSettings settings{.until = in.until, .step = in.step, .safety = in.safety};
     settings.every = out.every.value_or(in.until);
     settings.history_every = out.history_every.value_or(settings.every);
-    return march(*simulation.model, *simulation.constraints, settings, observer);
+    settings.initial_u = simulation.initial_u;
+    settings.initial_v = simulation.initial_v;
+    return march(*simulation.model, *simulation.constraints, settings, observer, from);
   }
   const DynamicRelaxationSettings settings{.targets = in.stretch,
                                            .increment = in.increment,
                                            .tolerance = in.tolerance,
                                            .max_iterations = in.max_iterations};
-  return relax(*simulation.model, *simulation.constraints, settings, observer);
+  return relax(*simulation.model, *simulation.constraints, settings, observer, from);
 }
 
 std::string contents(const std::filesystem::path& path) {
@@ -43,10 +45,6 @@ std::string contents(const std::filesystem::path& path) {
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// Where a run that stopped has left what it reached.
@@ -59,13 +57,14 @@ std::string last_state(const Recorder& recorder, const Simulation& simulation, c
 
 /// Marches to the end, or to where the run stops, and says why.
 RunStatus march_on(const Simulation& simulation, Recorder& recorder, Progress& screen, Log& log,
-                   const RunOptions& options) {
+                   const RunOptions& options, const Snapshot* from) {
   try {
-    static_cast<void>(solve(simulation, recorder));
+    static_cast<void>(solve(simulation, recorder, from));
     screen.finish();
     return RunStatus::finished;
   } catch (const Interrupted&) {
-    log.warning(fmt::format("interrupted. {}", last_state(recorder, simulation, options)));
+    log.warning(fmt::format("interrupted. {}. To go on: {}", last_state(recorder, simulation, options),
+                            options.resume_command));
     return RunStatus::interrupted;
   } catch (const std::bad_alloc&) {
     log.error(fmt::format("not enough memory for the run; try a larger spacing. {}",
@@ -109,43 +108,61 @@ Case with_paths_from(const std::filesystem::path& result, Case input) {
 }
 
 Summary summary_of(const Recorder& recorder, const Simulation& simulation, RunStatus status,
-                   const RunOptions& options, double wall_s) {
+                   const RunOptions& options) {
   Summary summary = recorder.summary();
   summary.status = status;
   summary.case_name = options.case_name;
-  summary.timing.wall_s = wall_s;
   if (simulation.parameter == Parameter::stretch) summary.timing.iterations = recorder.evaluations();
-  summary.timing.bond_evaluations_per_second =
-      static_cast<double>(recorder.evaluations()) * static_cast<double>(summary.timing.bonds) / wall_s;
+  summary.timing.bond_evaluations_per_second = static_cast<double>(recorder.evaluations()) *
+                                               static_cast<double>(summary.timing.bonds) /
+                                               summary.timing.wall_s;
   summary.memory_peak_bytes = peak_memory_bytes();
   return summary;
 }
 
-}  // namespace
-
-Summary run_case(const Case& input, const RunOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
-  const Simulation simulation = build_simulation(input);
-  const Probes probes(simulation);
-  check_before_run(simulation, probes);
-  ResultFolder folder = ResultFolder::create(options.folder, options.force);
+/// A new result folder, published with the case in it.
+ResultFolder new_folder(const Simulation& simulation, const RunOptions& options, bool replace) {
+  ResultFolder folder = ResultFolder::create(options.folder, replace);
   check_disk(simulation, available_disk(folder.path()));
-  Case resolved = with_paths_from(folder.target(), input);
+  Case resolved = with_paths_from(folder.target(), simulation.input);
   keep_tables(resolved, folder.path());
-  folder.publish(contents(input.file), resolved_case(resolved));
+  folder.publish(contents(simulation.input.file), resolved_case(resolved));
+  return folder;
+}
 
-  Progress screen;
-  Log log(std::cerr, [&] { screen.clear(); });
-  log.open(folder.log());
-  log.info(fmt::format("{}: {} points, {} bonds, {}, about {} of memory and {} -> {}", input.title,
-                       simulation.model->points(), simulation.model->bonds(),
-                       count_text(omp_get_max_threads(), "thread"), bytes_text(memory_estimate(input)),
-                       duration_text(time_estimate(simulation).total_s()), options.folder.string()));
-  for (const std::string& warning : warnings(simulation)) log.warning(warning);
-  Recorder recorder(simulation, probes, folder, screen, log);
-  watch_interrupts();
-  RunStatus status = march_on(simulation, recorder, screen, log, options);
-  // What follows fails on a full disk, mostly; each part is worth trying.
+/// Where a run writes, and what it goes on from.
+struct Start {
+  std::optional<ResultFolder> folder;  // nothing: a new one is to be made
+  Resumption resumption;
+};
+
+Start find_start(const Case& input, const RunOptions& options) {
+  Start start;
+  if (!options.resume) return start;
+  start.folder.emplace(ResultFolder::go_on(options.folder));
+  start.resumption = find_resumption(input, *start.folder);
+  // Nothing is lost by starting over where no checkpoint was written.
+  if (!start.resumption.finished && !start.resumption.checkpoint) start.folder.reset();
+  return start;
+}
+
+/// What kind of start this is, for those who asked for --resume.
+void tell_start(const Resumption& resumption, const Recorder& recorder, const Simulation& simulation,
+                Log& log) {
+  if (!resumption.checkpoint) return log.info("there is no checkpoint: the run starts over");
+  log.info(fmt::format("going on at {} {:.6g}, after {} steps and {:.1f} s", name(simulation.parameter),
+                       recorder.last().parameter, recorder.last().steps, recorder.wall_s()));
+  if (resumption.checkpoint->version != RIVEN_VERSION)
+    log.warning(
+        fmt::format("the checkpoint was written by Riven {}, this is Riven {}: the rest may differ in "
+                    "the last digits from what an uninterrupted run would give",
+                    resumption.checkpoint->version, RIVEN_VERSION));
+}
+
+/// Writes what remains to be written. Each part is worth trying: what fails here fails on a full disk,
+/// mostly.
+Summary conclude(Recorder& recorder, const Simulation& simulation, const ResultFolder& folder, Log& log,
+                 const RunOptions& options, RunStatus status) {
   const auto try_to = [&](const auto& write) {
     try {
       write();
@@ -155,19 +172,59 @@ Summary run_case(const Case& input, const RunOptions& options) {
     }
   };
   try_to([&] { recorder.keep_last(); });
-  Summary summary = summary_of(recorder, simulation, status, options, seconds_since(start));
+  Summary summary = summary_of(recorder, simulation, status, options);
   try_to([&] { write_summary(folder.summary(), summary); });
   summary.status = status;
+  std::error_code ignored;
+  if (status == RunStatus::finished) std::filesystem::remove(folder.checkpoint(), ignored);
+  return summary;
+}
+
+void tell_end(const Summary& summary, const Recorder& recorder, const Simulation& simulation, Log& log,
+              const RunOptions& options) {
   const std::string balance =
       simulation.model->conservative()
           ? fmt::format("energy balance {:.1e}", summary.energy.balance_error)
           : std::string("no energy balance: this model's force is not the gradient of its energy");
-  log.info(fmt::format("{} in {:.1f} s, {} force evaluations, {:.0f} million bonds/s, {}", name(status),
-                       summary.timing.wall_s, recorder.evaluations(),
+  log.info(fmt::format("{} in {:.1f} s, {} force evaluations, {:.0f} million bonds/s, {}",
+                       name(summary.status), summary.timing.wall_s, recorder.evaluations(),
                        1e-6 * summary.timing.bond_evaluations_per_second, balance));
-  if (status == RunStatus::finished)
+  if (summary.status == RunStatus::finished)
     log.info(fmt::format("results: {}/ (fields.pvd opens in ParaView; history.csv, summary.json)",
                          options.folder.string()));
+}
+
+}  // namespace
+
+Summary run_case(const Case& input, const RunOptions& options) {
+  const auto begin = Recorder::Clock::now();
+  Progress screen;
+  Log log(std::cerr, [&] { screen.clear(); });
+  Start start = find_start(input, options);
+  if (start.resumption.finished) {
+    log.info(fmt::format("{}: the run is finished, there is nothing to resume", options.folder.string()));
+    return read_summary(start.folder->summary());
+  }
+  const Simulation simulation = build_simulation(input);
+  const Probes probes(simulation);
+  check_before_run(simulation, probes);
+  if (!start.folder) start.folder.emplace(new_folder(simulation, options, options.force || options.resume));
+  const ResultFolder& folder = *start.folder;
+  const Checkpoint* from = start.resumption.checkpoint ? &*start.resumption.checkpoint : nullptr;
+  Recorder recorder(simulation, probes, folder, screen, log, begin, from);
+
+  log.open(folder.log());
+  log.info(fmt::format("{}: {} points, {} bonds, {}, about {} of memory and {} -> {}", input.title,
+                       simulation.model->points(), simulation.model->bonds(),
+                       count_text(omp_get_max_threads(), "thread"), bytes_text(memory_estimate(input)),
+                       duration_text(time_estimate(simulation).total_s()), options.folder.string()));
+  for (const std::string& warning : warnings(simulation)) log.warning(warning);
+  if (options.resume) tell_start(start.resumption, recorder, simulation, log);
+  watch_interrupts();
+  const RunStatus status =
+      march_on(simulation, recorder, screen, log, options, from != nullptr ? &from->state : nullptr);
+  const Summary summary = conclude(recorder, simulation, folder, log, options, status);
+  tell_end(summary, recorder, simulation, log, options);
   return summary;
 }
 

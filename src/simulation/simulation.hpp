@@ -27,6 +27,7 @@ struct Simulation {
   const Body* body = nullptr;  // the model's
   std::unique_ptr<Constraints> constraints;
   std::vector<PointSet> sets;
+  std::vector<double> initial_u, initial_v;  // m, m/s: initial conditions; empty without any
 
   /// Number of a face by its name, or nothing.
   static std::optional<std::size_t> face(const std::string& name);

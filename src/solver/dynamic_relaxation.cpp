@@ -48,49 +48,130 @@ class Relaxation {
         settings_(settings),
         observer_(observer),
         watchdog_(model),
+        stall_(std::max(kPatience, settings.max_iterations / 4)),
         n_(model.dofs()) {
     state_.u.assign(n_, 0.0);
     state_.parameter = settings.start;
-    for (auto* vector : {&force_, &old_force_, &velocity_, &mass_, &before_}) vector->assign(n_, 0.0);
+    for (auto* vector : {&start_, &force_, &old_force_, &velocity_, &mass_, &before_})
+      vector->assign(n_, 0.0);
   }
 
-  State run() {
-    constraints_.set_parameter(settings_.start);
-    work_.begin(constraints_, settings_.start);
-    offsets_.assign(constraints_.offsets().begin(), constraints_.offsets().end());
-    for (const double target : settings_.targets) reach(target);
+  State run(const Snapshot* from) {
+    if (from != nullptr)
+      restore(*from);
+    else
+      begin();
+    while (target_ < settings_.targets.size()) {
+      if (!stepping_) begin_step();
+      iterate();
+      observer_.safe_point([this] { return save(); });
+    }
     return std::move(state_);
   }
 
  private:
-  void reach(double target) {
-    const double direction = target < state_.parameter ? -1 : 1;
-    double increment = settings_.increment;
-    int cuts = 0;
-    while (direction * (target - state_.parameter) > 1e-12 * std::abs(target)) {
-      const double left = std::abs(target - state_.parameter);
-      // Equal steps to the target, none of them a crumb.
-      const double count = std::ceil(left / increment - 1e-9);
-      const double step = state_.steps == 0 ? std::min(left, kFirstStep * increment) : left / count;
-      const bool last = step > left * (1 - 1e-9);
-      const double next =
-          state_.steps == 0 ? state_.parameter + direction * step : target - direction * (count - 1) * step;
-      const auto failure = load_step(last ? target : next);
-      if (!failure) {
-        observer_.reached(state_, constraints_, last);
-        if (cuts > 0 && ++good_steps_ >= 4) {
-          --cuts;
-          increment *= 2;
-          good_steps_ = 0;
-        }
-        continue;
-      }
-      if (++cuts > kMostCuts) give_up(*failure);
-      good_steps_ = 0;
-      increment = 0.5 * (state_.steps == 0 ? increment : step);
-      observer_.remarked(fmt::format("load step to {:.6g} failed ({}); going on with steps of {:.3g}", next,
-                                     *failure, increment));
+  template <class Self, class Each>
+  static void each_member(Self& self, const Each& each) {
+    State::each_member(self.state_, "state", each);
+    each("relaxation.force", self.force_);
+    each("relaxation.velocity", self.velocity_);
+    each("relaxation.mass", self.mass_);
+    each("relaxation.least_reaction", self.least_reaction_);
+    each("relaxation.start", self.start_);
+    each("relaxation.before", self.before_);
+    each("relaxation.offsets", self.offsets_);
+    each("relaxation.last_change", self.last_change_);
+    each("relaxation.target", self.target_);
+    each("relaxation.stepping", self.stepping_);
+    each("relaxation.next", self.next_);
+    each("relaxation.step", self.step_);
+    each("relaxation.iteration", self.iteration_);
+    StallWatch::each_member(self.stall_, each);
+    each("relaxation.increment", self.increment_);
+    each("relaxation.cuts", self.cuts_);
+    each("relaxation.good_steps", self.good_steps_);
+  }
+  [[nodiscard]] Snapshot save() const {
+    Snapshot to;
+    each_member(*this, to.saving());
+    work_.save(to);
+    constraints_.save(to);
+    model_.save(to);
+    return to;
+  }
+  void restore(const Snapshot& from) {
+    each_member(*this, from.restoring());
+    work_.restore(from);
+    constraints_.restore(from);
+    model_.restore(from);
+  }
+
+  void begin() {
+    constraints_.set_parameter(settings_.start);
+    work_.begin(constraints_, settings_.start);
+    offsets_.assign(constraints_.offsets().begin(), constraints_.offsets().end());
+    increment_ = settings_.increment;
+    skip_reached_targets();
+  }
+
+  void skip_reached_targets() {
+    const auto reached = [this](double target) {
+      return std::abs(target - state_.parameter) <= 1e-12 * std::abs(target);
+    };
+    while (target_ < settings_.targets.size() && reached(settings_.targets[target_])) {
+      ++target_;
+      increment_ = settings_.increment;
+      cuts_ = 0;
     }
+  }
+
+  /// Takes the loads one step further: equal steps to the target, none of them a crumb.
+  void begin_step() {
+    const double target = settings_.targets[target_];
+    const double direction = target < state_.parameter ? -1 : 1;
+    const double left = std::abs(target - state_.parameter);
+    const double count = std::ceil(left / increment_ - 1e-9);
+    step_ = state_.steps == 0 ? std::min(left, kFirstStep * increment_) : left / count;
+    next_ =
+        state_.steps == 0 ? state_.parameter + direction * step_ : target - direction * (count - 1) * step_;
+    if (step_ > left * (1 - 1e-9)) next_ = target;
+    start_ = state_.u;
+    constraints_.set_parameter(next_);
+    predict(next_);
+    std::fill(velocity_.begin(), velocity_.end(), 0.0);
+    constraints_.apply(state_.u);
+    set_masses();
+    iteration_ = 0;
+    stepping_ = true;
+  }
+
+  /// The load step has come to equilibrium.
+  void accept() {
+    stepping_ = false;
+    before_ = start_;
+    keep_offsets();
+    state_.parameter = next_;
+    ++state_.steps;
+    balance();
+    observer_.reached(state_, constraints_, next_ == settings_.targets[target_]);
+    if (cuts_ > 0 && ++good_steps_ >= 4) {
+      --cuts_;
+      increment_ *= 2;
+      good_steps_ = 0;
+    }
+    skip_reached_targets();
+  }
+
+  /// The load step has failed: back to its start, and on with smaller ones.
+  void retreat(const std::string& failure) {
+    stepping_ = false;
+    state_.u = start_;
+    constraints_.set_parameter(state_.parameter);
+    if (++cuts_ > kMostCuts) give_up(failure);
+    good_steps_ = 0;
+    increment_ = 0.5 * (state_.steps == 0 ? increment_ : step_);
+    observer_.remarked(fmt::format("load step to {:.6g} failed ({}); going on with steps of {:.3g}", next_,
+                                   failure, increment_));
   }
 
   [[noreturn]] void give_up(const std::string& failure) const {
@@ -99,25 +180,6 @@ class Relaxation {
                     "{}. The body may have lost stability there (wrinkling, folding), or the law may not "
                     "stand the load; try {}, or another load",
                     state_.parameter, state_.steps + 1, 1 << kMostCuts, failure, model_.remedies()));
-  }
-
-  /// Takes the state to a new parameter, or leaves it as it was and says why.
-  std::optional<std::string> load_step(double target) {
-    const std::vector<double> start = state_.u;
-    constraints_.set_parameter(target);
-    predict(target);
-    auto failure = equilibrate(target);
-    if (failure) {
-      state_.u = start;
-      constraints_.set_parameter(state_.parameter);
-      return failure;
-    }
-    before_ = start;
-    keep_offsets();
-    state_.parameter = target;
-    ++state_.steps;
-    balance();
-    return std::nullopt;
   }
 
   void keep_offsets() {
@@ -144,33 +206,28 @@ class Relaxation {
     model_.move(state_.u, affine.gradient, affine.shift);
   }
 
-  std::optional<std::string> equilibrate(double target) {
-    std::fill(velocity_.begin(), velocity_.end(), 0.0);
-    constraints_.apply(state_.u);
-    set_masses();
-    StallWatch stall(std::max(kPatience, settings_.max_iterations / 4));
-    double residual = 0;
-    for (long iteration = 0; iteration < settings_.max_iterations; ++iteration) {
-      std::swap(force_, old_force_);
-      if (const auto breakdown = evaluate()) return text(*breakdown);
-      const Sums sums = sweep();
-      residual = std::sqrt(sums.force2) / std::max(constraints_.reaction_norm(), least_reaction_);
-      const bool converged = residual <= settings_.tolerance;
-      if (iteration % kProgressEvery == 0 || converged || !std::isfinite(residual)) {
-        if (const auto breakdown = watchdog_.inspect(constraints_, state_.u, force_)) return text(*breakdown);
-        report(target, iteration, residual);
-      }
-      if (converged) {
-        const auto breakdown = model_.inspect(state_.u);
-        return breakdown ? std::make_optional(text(*breakdown)) : std::nullopt;
-      }
-      if (stall.stalled(iteration, residual))
-        return fmt::format("the residual has stalled for {} iterations: {}", stall.patience(),
-                           unrest(residual));
-      advance(damping(sums), iteration == 0);
+  void iterate() {
+    std::swap(force_, old_force_);
+    if (const auto breakdown = evaluate()) return retreat(text(*breakdown));
+    const Sums sums = sweep();
+    const double residual = std::sqrt(sums.force2) / std::max(constraints_.reaction_norm(), least_reaction_);
+    const bool converged = residual <= settings_.tolerance;
+    if (iteration_ % kProgressEvery == 0 || converged || !std::isfinite(residual)) {
+      if (const auto breakdown = watchdog_.inspect(constraints_, state_.u, force_))
+        return retreat(text(*breakdown));
+      report(residual);
     }
-    return fmt::format("not converged in the {} iterations of solver.max_iterations: {}",
-                       settings_.max_iterations, unrest(residual));
+    if (converged) {
+      const auto breakdown = model_.inspect(state_.u);
+      return breakdown ? retreat(text(*breakdown)) : accept();
+    }
+    if (stall_.stalled(iteration_, residual))
+      return retreat(
+          fmt::format("the residual has stalled for {} iterations: {}", stall_.patience(), unrest(residual)));
+    advance(damping(sums), iteration_ == 0);
+    if (++iteration_ == settings_.max_iterations)
+      retreat(fmt::format("not converged in the {} iterations of solver.max_iterations: {}",
+                          settings_.max_iterations, unrest(residual)));
   }
 
   /// How far from equilibrium the present state is, and where most.
@@ -246,15 +303,15 @@ class Relaxation {
                       state_.parameter, 100 * lost / energy.largest));
   }
 
-  void report(double target, long iteration, double residual) const {
+  void report(double residual) const {
     const double left = std::abs(settings_.targets.back() - state_.parameter) / settings_.increment;
-    observer_.progressed({.parameter = target,
+    observer_.progressed({.parameter = next_,
                           .reached = state_.parameter,
                           .begin = settings_.start,
                           .end = settings_.targets.back(),
                           .step = state_.steps + 1,
                           .steps = state_.steps + std::max(1L, std::lround(std::ceil(left - 1e-9))),
-                          .iteration = iteration,
+                          .iteration = iteration_,
                           .evaluations = state_.evaluations,
                           .residual = residual,
                           .tolerance = settings_.tolerance});
@@ -265,21 +322,28 @@ class Relaxation {
   const DynamicRelaxationSettings& settings_;
   Observer& observer_;
   Watchdog watchdog_;
+  StallWatch stall_;
   std::size_t n_;
   State state_;
   WorkIntegral work_{WorkIntegral::Rule::parabolic};
   std::vector<double> force_, old_force_, velocity_, mass_;
-  std::vector<double> before_;                 // state one load step back
+  std::vector<double> start_, before_;         // states at the start of this load step, and of the last one
   double least_reaction_ = 0;                  // N, scale of the residual where there is next to no reaction
   std::vector<double> offsets_, last_change_;  // of the constraints (m): here, and in the last load step
-  int good_steps_ = 0;                         // since the last cut
+  std::size_t target_ = 0;                     // number of the target that is aimed at
+  bool stepping_ = false;                      // in the middle of a load step
+  double next_ = 0, step_ = 0;                 // parameter at the end of this load step, and its length
+  long iteration_ = 0;                         // of this load step
+  double increment_ = 0;                       // largest load step, as it is cut now
+  int cuts_ = 0;
+  int good_steps_ = 0;  // since the last cut
 };
 
 }  // namespace
 
 State relax(Model& model, Constraints& constraints, const DynamicRelaxationSettings& settings,
-            Observer& observer) {
-  return Relaxation(model, constraints, settings, observer).run();
+            Observer& observer, const Snapshot* from) {
+  return Relaxation(model, constraints, settings, observer).run(from);
 }
 
 }  // namespace riven

@@ -18,8 +18,9 @@ struct DynamicRelaxationSettings {
 /// Marches a model through states of equilibrium by adaptive dynamic relaxation: fictitious masses from the
 /// tangent's row sums, damping from a Rayleigh quotient of the velocity (peridynamics theory, eq. (11), after
 /// Underwood 1983). A step starts from an affine predictor, later from the extrapolated path, and is halved
-/// when it fails. Throws SolverFailure when steps have become too small.
+/// when it fails. Begins undeformed, or where a snapshot was taken. Throws SolverFailure when steps have
+/// become too small.
 State relax(Model& model, Constraints& constraints, const DynamicRelaxationSettings& settings,
-            Observer& observer);
+            Observer& observer, const Snapshot* from = nullptr);
 
 }  // namespace riven

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "base/snapshot.hpp"
 #include "load/constraints.hpp"
 #include "model/model.hpp"
 
@@ -15,11 +17,20 @@ struct EnergyBalance {
   double kinetic = 0;
   double strain = 0;
   double dissipated = 0;
-  double external_work = 0;
-  double largest = 0;  // largest of the above so far, the scale of the error
+  double external_work = 0;  // of the loads, and what brought the body into the state it started from
+  double largest = 0;        // largest of the above so far, the scale of the error
 
   [[nodiscard]] double error() const {
     return largest > 0 ? (kinetic + strain + dissipated - external_work) / largest : 0;
+  }
+
+  template <class Self, class Each>
+  static void each_member(Self& self, const std::string& name, const Each& each) {
+    each(name + ".kinetic", self.kinetic);
+    each(name + ".strain", self.strain);
+    each(name + ".dissipated", self.dissipated);
+    each(name + ".external_work", self.external_work);
+    each(name + ".largest", self.largest);
   }
 };
 
@@ -31,6 +42,16 @@ struct State {
   EnergyBalance energy;
   long steps = 0;        // load or time steps
   long evaluations = 0;  // of the force
+
+  template <class Self, class Each>
+  static void each_member(Self& self, const std::string& name, const Each& each) {
+    each(name + ".parameter", self.parameter);
+    each(name + ".u", self.u);
+    each(name + ".v", self.v);
+    EnergyBalance::each_member(self.energy, name + ".energy", each);
+    each(name + ".steps", self.steps);
+    each(name + ".evaluations", self.evaluations);
+  }
 };
 
 /// What a solver is doing, for those who wait.
@@ -56,6 +77,9 @@ class Observer {
   virtual void reached(const State&, const Constraints&, bool /*output*/) {}
   /// Something the user should know while the run goes on.
   virtual void remarked(const std::string&) {}
+  /// Called after every time step or iteration and all that follows from it; must be cheap. `take` makes the
+  /// snapshot from which the run goes on bit for bit. What the observer throws here ends the run.
+  virtual void safe_point(const std::function<Snapshot()>& /*take*/) {}
 };
 
 /// A solver could not go on: why, where it happened and what might help. The observers hold the last good

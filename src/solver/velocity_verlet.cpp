@@ -19,10 +19,29 @@ constexpr long kStepsBetweenEstimates = 100;
 // run is lost.
 constexpr double kRunaway = 0.1;
 
+/// Steps of equal length that end at a time at which something is written, exactly.
+struct Leg {
+  double begin = 0, end = 0, step = 0;  // s
+  long steps = 0, done = 0;
+
+  template <class Self, class Each>
+  static void each_member(Self& self, const Each& each) {
+    each("verlet.leg.begin", self.begin);
+    each("verlet.leg.end", self.end);
+    each("verlet.leg.step", self.step);
+    each("verlet.leg.steps", self.steps);
+    each("verlet.leg.done", self.done);
+  }
+};
+
 /// Times at which something is written: multiples of an interval, and the end.
 class Schedule {
  public:
   Schedule(double interval, double end) : interval_(interval), end_(end) {}
+  template <class Self, class Each>
+  static void each_member(Self& self, const std::string& name, const Each& each) {
+    each(name + ".count", self.count_);
+  }
   [[nodiscard]] double next() const { return std::min(static_cast<double>(count_) * interval_, end_); }
   /// Whether `time` is one of them; if so, moves on to the next.
   bool due(double time) {
@@ -44,7 +63,9 @@ class Verlet {
         settings_(settings),
         observer_(observer),
         watchdog_(model),
-        n_(model.dofs()) {
+        n_(model.dofs()),
+        outputs_(settings.every, settings.until),
+        history_(settings.history_every, settings.until) {
     state_.parameter = 0;
     state_.u.assign(n_, 0.0);
     state_.v.assign(n_, 0.0);
@@ -55,52 +76,103 @@ class Verlet {
       if (!constraints_.is_free(i)) mass_[i] = 0;
   }
 
-  State run() {
-    constraints_.set_parameter(0);
-    constraints_.apply(state_.u);
-    evaluate();
-    work_.begin(constraints_, 0);
-    start_energy_ = model_.strain_energy(state_.u);
-    estimate_step();
-    balance();
-    observer_.reached(state_, constraints_, true);
-    Schedule outputs(settings_.every, settings_.until), history(settings_.history_every, settings_.until);
-    while (state_.parameter < settings_.until * (1 - 1e-12)) {
-      const double event = std::min(outputs.next(), history.next());
-      advance_to(event);
-      look_at_body();
-      balance();
-      check_energy();
-      const bool output = outputs.due(event), row = history.due(event);
-      if (output) check_points();
-      if (output || row) observer_.reached(state_, constraints_, output);
+  State run(const Snapshot* from) {
+    if (from != nullptr)
+      restore(*from);
+    else
+      begin();
+    while (unfinished()) {
+      take_step();
+      observer_.safe_point([this] { return save(); });
     }
     return std::move(state_);
   }
 
  private:
-  /// Steps of equal length that end at `event` exactly. Every so many steps the stable step is estimated
-  /// again and the body looked at.
-  void advance_to(double event) {
-    while (state_.parameter < event) {
-      const double left = event - state_.parameter;
-      const auto steps = std::max(1L, static_cast<long>(std::ceil(left / step_ - 1e-9)));
-      const long now = std::min(steps, next_estimate_ - state_.steps);
-      const double dt = left / static_cast<double>(steps);
-      const double begin = state_.parameter;
-      for (long s = 1; s <= now; ++s) step(dt, s == steps ? event : begin + static_cast<double>(s) * dt);
-      if (state_.steps < next_estimate_) continue;
-      observer_.progressed({.parameter = state_.parameter,
-                            .reached = state_.parameter,
-                            .end = settings_.until,
-                            .step = state_.steps,
-                            .evaluations = state_.evaluations});
-      look_at_body();
-      estimate_step();
-      balance();
-      check_energy();
-      check_points();
-    }
+  template <class Self, class Each>
+  static void each_member(Self& self, const Each& each) {
+    State::each_member(self.state_, "state", each);
+    each("verlet.force", self.force_);
+    each("verlet.step", self.step_);
+    each("verlet.next_estimate", self.next_estimate_);
+    each("verlet.rest_energy", self.rest_energy_);
+    Leg::each_member(self.leg_, each);
+    Schedule::each_member(self.outputs_, "verlet.outputs", each);
+    Schedule::each_member(self.history_, "verlet.history", each);
+  }
+  [[nodiscard]] Snapshot save() const {
+    Snapshot to;
+    each_member(*this, to.saving());
+    work_.save(to);
+    constraints_.save(to);
+    model_.save(to);
+    return to;
+  }
+  void restore(const Snapshot& from) {
+    each_member(*this, from.restoring());
+    work_.restore(from);
+    constraints_.restore(from);
+    model_.restore(from);
+  }
+
+  [[nodiscard]] bool unfinished() const { return state_.parameter < settings_.until * (1 - 1e-12); }
+
+  void begin() {
+    rest_energy_ = model_.strain_energy(state_.u);
+    if (!settings_.initial_u.empty()) state_.u = settings_.initial_u;
+    if (!settings_.initial_v.empty()) state_.v = settings_.initial_v;
+    for (std::size_t i = 0; i < n_; ++i)
+      if (mass_[i] == 0) state_.v[i] = 0;
+    constraints_.set_parameter(0);
+    constraints_.apply(state_.u);
+    evaluate();
+    work_.begin(constraints_, 0);
+    estimate_step();
+    balance();
+    state_.energy.external_work = state_.energy.kinetic + state_.energy.strain;
+    observer_.reached(state_, constraints_, true);
+    plan();
+  }
+
+  /// Steps from here to the next time at which something is written.
+  void plan() {
+    leg_.begin = state_.parameter;
+    leg_.end = std::min(outputs_.next(), history_.next());
+    const double left = leg_.end - leg_.begin;
+    leg_.steps = std::max(1L, static_cast<long>(std::ceil(left / step_ - 1e-9)));
+    leg_.step = left / static_cast<double>(leg_.steps);
+    leg_.done = 0;
+  }
+
+  /// Every so many steps the stable step is estimated again and the body looked at.
+  void take_step() {
+    ++leg_.done;
+    const bool last = leg_.done == leg_.steps, look = state_.steps + 1 == next_estimate_;
+    step(leg_.step, last ? leg_.end : leg_.begin + static_cast<double>(leg_.done) * leg_.step);
+    if (look) look_around();
+    if (last) write();
+    if ((look || last) && unfinished()) plan();
+  }
+
+  void look_around() {
+    observer_.progressed({.parameter = state_.parameter,
+                          .reached = state_.parameter,
+                          .end = settings_.until,
+                          .step = state_.steps,
+                          .evaluations = state_.evaluations});
+    estimate_step();
+    balance();
+    check_energy();
+    check_points();
+  }
+
+  void write() {
+    look_at_body();
+    balance();
+    check_energy();
+    const bool output = outputs_.due(leg_.end), row = history_.due(leg_.end);
+    if (output) check_points();
+    if (output || row) observer_.reached(state_, constraints_, output);
   }
 
   void step(double dt, double time) {
@@ -160,7 +232,7 @@ class Verlet {
     EnergyBalance& energy = state_.energy;
     energy.kinetic =
         ordered_sum_of(n_, [&](std::size_t i) { return 0.5 * mass_[i] * state_.v[i] * state_.v[i]; });
-    energy.strain = model_.strain_energy(state_.u) - start_energy_;
+    energy.strain = model_.strain_energy(state_.u) - rest_energy_;
     energy.dissipated = model_.dissipated_energy();
     energy.largest = std::max({energy.largest, energy.kinetic, std::abs(energy.strain), energy.dissipated,
                                std::abs(energy.external_work)});
@@ -175,9 +247,9 @@ class Verlet {
   }
 
   void check_energy() const {
+    if (!model_.conservative()) return;  // its balance tells nothing
     const double error = state_.energy.error();
-    if (!model_.conservative() || std::abs(error) <= kRunaway || state_.energy.largest <= rounding_energy())
-      return;
+    if (std::abs(error) <= kRunaway || state_.energy.largest <= rounding_energy()) return;
     const std::size_t fastest = Watchdog::largest(state_.v);
     throw SolverFailure(
         fmt::format("at t = {:.6g} s, step {}, the energy runs away: {:.1f} % of it came from nowhere; the "
@@ -208,7 +280,9 @@ class Verlet {
   std::vector<double> force_, mass_;  // mass 0 where nothing is free to move
   double step_ = 0;
   long next_estimate_ = 0;  // number of the step after which the stable step is estimated again
-  double start_energy_ = 0;
+  double rest_energy_ = 0;  // that the model has without displacement (J)
+  Leg leg_;
+  Schedule outputs_, history_;
 };
 
 }  // namespace
@@ -225,8 +299,8 @@ double stable_step(Model& model, const Constraints& constraints, std::span<const
 }
 
 State march(Model& model, Constraints& constraints, const VelocityVerletSettings& settings,
-            Observer& observer) {
-  return Verlet(model, constraints, settings, observer).run();
+            Observer& observer, const Snapshot* from) {
+  return Verlet(model, constraints, settings, observer).run(from);
 }
 
 }  // namespace riven

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "solver/solver.hpp"
 
@@ -13,15 +14,17 @@ struct VelocityVerletSettings {
   std::optional<double>
       step;  // s; default: safety times the stable step, estimated again as the body deforms
   double safety = 0.8;
+  std::vector<double> initial_u, initial_v;  // m, m/s, of the free entries; empty: 0
 };
 
 /// Largest stable step of Verlet's method (s) in a state, from the bound of the tangent's rows.
 double stable_step(Model& model, const Constraints& constraints, std::span<const double> u);
 
-/// Marches a model through time from rest by velocity Verlet (peridynamics theory, section 8). Prescribed
-/// entries move as they are told; they carry no inertia of their own in the energy balance. Throws InputError
-/// for a given step above the stable one, SolverFailure when the run blows up.
+/// Marches a model through time by velocity Verlet (peridynamics theory, section 8), from its initial state
+/// or from where a snapshot was taken. Prescribed entries move as they are told; they carry no inertia of
+/// their own in the energy balance. Throws InputError for a given step above the stable one, SolverFailure
+/// when the run blows up.
 State march(Model& model, Constraints& constraints, const VelocityVerletSettings& settings,
-            Observer& observer);
+            Observer& observer, const Snapshot* from = nullptr);
 
 }  // namespace riven

@@ -40,6 +40,12 @@ class StallWatch {
   bool stalled(long iteration, double residual);
   [[nodiscard]] long patience() const { return patience_; }
 
+  template <class Self, class Each>
+  static void each_member(Self& self, const Each& each) {
+    each("stall.best_at", self.best_at_);
+    each("stall.best", self.best_);
+  }
+
  private:
   long patience_;
   long best_at_ = 0;

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <string>
+#include <type_traits>
 #include <vector>
 
+#include "base/snapshot.hpp"
 #include "load/constraints.hpp"
 
 namespace riven {
@@ -19,12 +22,27 @@ class WorkIntegral {
   /// Work (J) from the last call, or from `begin`, to the constraints' present state.
   double since_last_call(const Constraints& constraints, double parameter);
 
+  void save(Snapshot& to) const { each_member(*this, to.saving()); }
+  void restore(const Snapshot& from) { each_member(*this, from.restoring()); }
+
  private:
   struct Sample {
     double parameter = 0;
     std::vector<double> offset;
     std::vector<double> force;
   };
+  template <class Self, class Each>
+  static void each_member(Self& self, const Each& each) {
+    std::size_t count = self.past_.size();
+    each("work.samples", count);
+    if constexpr (!std::is_const_v<Self>) self.past_.assign(count, {});
+    for (std::size_t n = 0; n < count; ++n) {
+      const std::string name = "work." + std::to_string(n);
+      each(name + ".parameter", self.past_[n].parameter);
+      each(name + ".offset", self.past_[n].offset);
+      each(name + ".force", self.past_[n].force);
+    }
+  }
   static Sample sample(const Constraints& constraints, double parameter);
   Rule rule_;
   std::vector<Sample> past_;  // one, or two for the parabola
