@@ -160,6 +160,7 @@ class Verlet {
                           .end = settings_.until,
                           .step = state_.steps,
                           .evaluations = state_.evaluations});
+    look_at_body();
     estimate_step();
     balance();
     check_energy();
