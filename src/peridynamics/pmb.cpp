@@ -81,15 +81,8 @@ void Pmb::make_lattice_kernel(const LatticeBonds& on) {
     lattice_.stencil.push_back(
         {stencil.shift[k], stencil.bond[k], stencil.length[k], 1 / stencil.length[k], limit * limit});
   }
-  std::size_t intact = 0;
-  for (std::size_t block = 0; block < body().size() / kLanes; ++block) {
-    const std::uint8_t* masks = on.bonds.masks(block);
-    const auto all = [&](std::uint8_t value) {
-      return std::all_of(masks, masks + stencil.size(), [value](std::uint8_t mask) { return mask == value; });
-    };
-    lattice_.blocks.push_back(all(0) ? BlockKind::empty : all(0xff) ? BlockKind::intact : BlockKind::partial);
-    intact += lattice_.blocks.back() == BlockKind::intact ? 1 : 0;
-  }
+  for (std::size_t block = 0; block < body().size() / kLanes; ++block)
+    lattice_.blocks.push_back(on.bonds.kind(block));
   lattice_.masks = std::get<LatticeBonds>(own_body().bonds).bonds.masks(0);
   lattice_.weight = weight_.data();
   lattice_.stiffness = micromodulus_;
