@@ -1,6 +1,7 @@
-// Rates of the membrane model on a square sheet with a hole: directed bonds per second of one force
-// evaluation, and bytes that the model holds per point and per directed bond; for bonds on a lattice and for
-// the same bonds in lists. Run: riven_bench [--benchmark_filter=...]
+// Rates of the membrane models on a square sheet with a hole: directed bonds per CPU second of all threads,
+// and bytes that body and model hold per directed bond; on a lattice and with the same bonds in lists, for
+// each instruction set. One iteration is one evaluation of the force. Run: riven_bench
+// [--benchmark_filter=...]
 
 #include <benchmark/benchmark.h>
 #include <omp.h>
@@ -9,8 +10,10 @@
 #include <limits>
 #include <utility>
 
+#include "base/instruction_set.hpp"
 #include "body/lattice_body.hpp"
 #include "body/listed_body.hpp"
+#include "peridynamics/bond_membrane.hpp"
 #include "peridynamics/membrane.hpp"
 
 namespace {
@@ -30,7 +33,7 @@ Body make_sheet(int points_per_side) {
 }
 
 /// Every stored point stretched by half; ghosts included.
-std::vector<double> stretched(const Membrane& sheet) {
+std::vector<double> stretched(const PointModel& sheet) {
   std::vector<double> u(sheet.dofs(), 0.0);
   const Body& body = sheet.body();
   const auto stretch = [&](std::size_t i) {
@@ -43,9 +46,23 @@ std::vector<double> stretched(const Membrane& sheet) {
   return u;
 }
 
-void measure_force(benchmark::State& state, Body body) {
+Membrane make_model(Body body, const Membrane* /*kind*/) {
+  return {std::move(body), Material{"rubber", NeoHookean{18e6}, 1100}, 4.0};
+}
+
+BondMembrane make_model(Body body, const BondMembrane* /*kind*/) {
+  return {std::move(body), Material{"rubber", NeoHookean{18e6}, 1100}, {}};
+}
+
+template <class Model>
+void force(benchmark::State& state) {
+  const bool lists = state.range(0) != 0;
+  const auto set = static_cast<InstructionSet>(state.range(2));
+  if (!supported(set)) return state.SkipWithError("this processor lacks the instruction set");
+  use_instruction_set(set);
   omp_set_num_threads(static_cast<int>(state.range(1)));
-  Membrane sheet(std::move(body), Material{"rubber", NeoHookean{18e6}, 1100}, 4.0);
+  const Body body = make_sheet(static_cast<int>(state.range(3)));
+  Model sheet = make_model(lists ? listed(body) : body, static_cast<const Model*>(nullptr));
   const std::vector<double> u = stretched(sheet);
   std::vector<double> f(sheet.dofs());
   for (auto _ : state) {
@@ -53,29 +70,19 @@ void measure_force(benchmark::State& state, Body body) {
     benchmark::ClobberMemory();
   }
   const auto bonds = static_cast<double>(sheet.bonds());
-  state.counters["bonds/s"] =
+  state.counters["bonds"] = bonds;
+  state.counters["bonds/cpu_s"] =
       benchmark::Counter(bonds * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
-  state.counters["bytes/point"] = static_cast<double>(sheet.bytes()) / static_cast<double>(sheet.points());
   state.counters["bytes/bond"] = static_cast<double>(sheet.bytes()) / bonds;
 }
 
-void force(benchmark::State& state) {
-  measure_force(state, make_sheet(static_cast<int>(state.range(0))));
+void arguments(benchmark::internal::Benchmark* bench) {
+  bench->ArgNames({"listed", "threads", "isa", "side"})
+      ->ArgsProduct({{0, 1}, {1, 2}, {0, 1, 2}, {400}})
+      ->MeasureProcessCPUTime()
+      ->Unit(benchmark::kMicrosecond);
 }
-
-void force_listed(benchmark::State& state) {
-  measure_force(state, listed(make_sheet(static_cast<int>(state.range(0)))));
-}
-
-BENCHMARK(force)
-    ->ArgNames({"side", "threads"})
-    ->ArgsProduct({{100, 400, 1000}, {1, 2}})
-    ->UseRealTime()
-    ->Unit(benchmark::kMicrosecond);
-BENCHMARK(force_listed)
-    ->ArgNames({"side", "threads"})
-    ->ArgsProduct({{100, 400, 1000}, {1, 2}})
-    ->UseRealTime()
-    ->Unit(benchmark::kMicrosecond);
+BENCHMARK(force<Membrane>)->Apply(arguments);
+BENCHMARK(force<BondMembrane>)->Apply(arguments);
 
 }  // namespace

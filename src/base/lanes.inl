@@ -28,10 +28,58 @@ RIVEN_INLINE Lanes load(const double* from) {
   return lanes;
 }
 
+/// A row of a square to be transposed: one register, or of eight lanes two halves from places four apart.
+RIVEN_INLINE Register load_row(const double* const* from, std::size_t offset) {
+#if RIVEN_REGISTER == 8
+  return reinterpret_cast<Register>(_mm512_insertf64x4(
+      _mm512_castpd256_pd512(_mm256_loadu_pd(from[0] + offset)), _mm256_loadu_pd(from[4] + offset), 1));
+#else
+  return *reinterpret_cast<const UnalignedRegister*>(from[0] + offset);
+#endif
+}
+
 RIVEN_INLINE void store(double* to, Lanes lanes) {
   RIVEN_UNROLL
   for (std::size_t p = 0; p < kRegisters; ++p)
     *reinterpret_cast<UnalignedRegister*>(to + p * kRegister) = lanes.part[p];
+}
+
+/// Swaps what lies off the diagonal in the blocks of `h` lanes of two registers.
+template <std::size_t h, std::size_t... lane>
+RIVEN_INLINE void exchange(Register& a, Register& b, std::index_sequence<lane...>) {
+  const Register upper = __builtin_shufflevector(a, b, ((lane & h) != 0 ? kRegister + lane - h : lane)...);
+  b = __builtin_shufflevector(a, b, ((lane & h) != 0 ? kRegister + lane : lane + h)...);
+  a = upper;
+}
+
+/// Four doubles from each of eight places: lane l of to[n] is from[l][n].
+RIVEN_INLINE void load_fours(const double* const (&from)[kLanes], std::size_t offset, Lanes* to) {
+  constexpr std::size_t side = kRegister < 4 ? kRegister : 4;
+  constexpr auto lanes = std::make_index_sequence<kRegister>();
+  RIVEN_UNROLL
+  for (std::size_t p = 0; p < kRegisters; ++p) {
+    RIVEN_UNROLL
+    for (std::size_t n = 0; n < 4; n += side) {
+      Register row[side];
+      RIVEN_UNROLL
+      for (std::size_t m = 0; m < side; ++m) row[m] = load_row(from + p * kRegister + m, offset + n);
+      if constexpr (side == 4) {
+        exchange<2>(row[0], row[2], lanes);
+        exchange<2>(row[1], row[3], lanes);
+        exchange<1>(row[2], row[3], lanes);
+      }
+      exchange<1>(row[0], row[1], lanes);
+      RIVEN_UNROLL
+      for (std::size_t m = 0; m < side; ++m) to[n + m].part[p] = row[m];
+    }
+  }
+}
+
+/// The first N doubles, a multiple of four, at each of eight places: lane l of to[n] is from[l][n].
+template <std::size_t N>
+RIVEN_INLINE void load_across(const double* const (&from)[kLanes], Lanes (&to)[N]) {
+  RIVEN_UNROLL
+  for (std::size_t n = 0; n < N; n += 4) load_fours(from, n, to + n);
 }
 
 #define RIVEN_LANES_OPERATOR(op)                                                     \
@@ -73,10 +121,12 @@ RIVEN_INLINE Lanes magnitude(Lanes a) {
 
 /// Sum of the lanes, always in the same order.
 RIVEN_INLINE double sum(Lanes lanes) {
-  double total = 0;
+  Register parts = lanes.part[0];
   RIVEN_UNROLL
-  for (const Register& part : lanes.part)
-    for (std::size_t l = 0; l < kRegister; ++l) total += part[l];
+  for (std::size_t p = 1; p < kRegisters; ++p) parts += lanes.part[p];
+  double total = parts[0];
+  RIVEN_UNROLL
+  for (std::size_t l = 1; l < kRegister; ++l) total += parts[l];
   return total;
 }
 

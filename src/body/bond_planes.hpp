@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -7,6 +8,13 @@
 #include "body/stencil.hpp"
 
 namespace riven {
+
+/// Bonds of eight neighbouring points of a row.
+enum class BlockKind : std::uint8_t {
+  empty,  // no point has a bond
+  partial,
+  intact,  // all eight have all bonds of the stencil
+};
 
 /// Which bonds of a lattice body exist: for each offset of the stencil one bit per point. One byte is the
 /// mask of one vector of points; the bytes of all offsets for the same vector lie side by side, so that a
@@ -25,6 +33,13 @@ class BondPlanes {
     return bytes_.data() + offsets_ * block;
   }
   [[nodiscard]] std::uint8_t* masks(std::size_t block) { return bytes_.data() + offsets_ * block; }
+
+  [[nodiscard]] BlockKind kind(std::size_t block) const {
+    const std::uint8_t *first = masks(block), *last = first + offsets_;
+    if (std::all_of(first, last, [](std::uint8_t mask) { return mask == 0; })) return BlockKind::empty;
+    const bool whole = std::all_of(first, last, [](std::uint8_t mask) { return mask == 0xff; });
+    return whole ? BlockKind::intact : BlockKind::partial;
+  }
 
   /// Joins a point and its neighbour, seen from both ends.
   void join(const Stencil& stencil, std::size_t offset, std::size_t point) {

@@ -1,8 +1,7 @@
 #pragma once
 
+#include <cmath>
 #include <string>
-
-#include "base/lanes.hpp"
 
 namespace riven {
 
@@ -19,16 +18,14 @@ struct BondLaw {
   double e = 0;
 
   /// P of a squared stretch.
-  template <class T>
-  [[nodiscard]] T potential(T s2) const {
-    const T q = 1.0 / s2;
-    return (p4 * s2 + p2) * s2 + m1 * square_root(q) + (m2 + (m4 + m6 * q) * q) * q;
+  [[nodiscard]] double potential(double s2) const {
+    const double q = 1 / s2;
+    return (p4 * s2 + p2) * s2 + m1 * std::sqrt(q) + (m2 + (m4 + m6 * q) * q) * q;
   }
   /// R of a squared stretch.
-  template <class T>
-  [[nodiscard]] T response(T s2) const {
-    const T q = 1.0 / s2;
-    return p2 + 2.0 * p4 * s2 - q * (0.5 * m1 * square_root(q) + q * (m2 + q * (2.0 * m4 + 3.0 * m6 * q)));
+  [[nodiscard]] double response(double s2) const {
+    const double q = 1 / s2;
+    return p2 + 2 * p4 * s2 - q * (0.5 * m1 * std::sqrt(q) + q * (m2 + q * (2 * m4 + 3 * m6 * q)));
   }
   /// Derivative of the force s R(s) in s.
   [[nodiscard]] double stiffness(double s) const;

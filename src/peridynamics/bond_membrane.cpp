@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/error.hpp"
+#include "base/lanes.hpp"
 #include "base/parallel.hpp"
 
 namespace riven {
@@ -33,7 +34,8 @@ BondMembrane::BondMembrane(Body body, Material material, const BondMembraneSetti
     : PointModel(std::move(body), material.density),
       material_(std::move(material)),
       settings_(settings),
-      law_(settings.zero_residual ? zero_residual_law(settings.loading) : published_law(settings.loading)) {
+      law_(settings.zero_residual ? zero_residual_law(settings.loading) : published_law(settings.loading)),
+      kernel_(bond_membrane_kernel()) {
   const Body& b = this->body();
   if (b.dimension != 2)
     throw InputError("a membrane is two-dimensional: give the box two sizes and a thickness");
@@ -50,15 +52,25 @@ BondMembrane::BondMembrane(Body body, Material material, const BondMembraneSetti
     volume_[ghost.point] = b.volume[ghost.master];
     share_[ghost.point] = 0.5;
   }
-  if (const LatticeBonds* on = b.on_lattice())
-    for (std::size_t k = 0; k < on->stencil.size(); ++k) {
-      const double x = on->stencil.bond[k][0], y = on->stencil.bond[k][1], length = on->stencil.length[k];
-      stencil_.push_back({on->stencil.shift[k], x, y, 1 / (length * length),
-                          4 * c0_ * b.horizon / (length * length * length), x * x / (length * length),
-                          y * y / (length * length)});
-    }
   for (auto& factor : correction_) factor.assign(b.size(), 1.0);
   if (settings_.surface_correction) find_corrections();
+  if (const LatticeBonds* on = b.on_lattice()) make_lattice_kernel(*on);
+}
+
+void BondMembrane::make_lattice_kernel(const LatticeBonds& on) {
+  for (std::size_t k = 0; k < on.stencil.size(); ++k) {
+    const double x = on.stencil.bond[k][0], y = on.stencil.bond[k][1], length = on.stencil.length[k];
+    lattice_.stencil.push_back({on.stencil.shift[k], x, y, 1 / (length * length),
+                                4 * c0_ * body().horizon / (length * length * length),
+                                x * x / (length * length), y * y / (length * length)});
+  }
+  for (std::size_t block = 0; block < body().size() / kLanes; ++block)
+    lattice_.blocks.push_back(on.bonds.kind(block));
+  lattice_.masks = on.bonds.masks(0);
+  lattice_.law = law_;
+  lattice_.correction = {correction_[0].data(), correction_[1].data()};
+  lattice_.volume = volume_.data();
+  lattice_.share = share_.data();
 }
 
 BondMembrane::Bond BondMembrane::bond_between(std::size_t point, std::size_t neighbour) const {
@@ -237,7 +249,7 @@ std::vector<std::string> BondMembrane::describe() const {
 }
 
 std::size_t BondMembrane::bytes() const {
-  return body().bytes() + 4 * body().size() * sizeof(double);
+  return body().bytes() + 4 * body().size() * sizeof(double) + lattice_.blocks.size();
 }
 
 }  // namespace riven

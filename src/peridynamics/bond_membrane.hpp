@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "material/material.hpp"
-#include "peridynamics/bond_law.hpp"
+#include "peridynamics/bond_membrane_kernels.hpp"
 #include "peridynamics/point_model.hpp"
 
 namespace riven {
@@ -64,9 +64,8 @@ class BondMembrane final : public PointModel {
   /// Force density on the point over the deformed bond: f V_far = this times Y (N/m^4).
   [[nodiscard]] double pull(std::size_t point, const Bond& bond, const Eigen::Vector2d& y) const;
   [[nodiscard]] double energy_density(std::size_t point, std::span<const double> u) const;
+  void make_lattice_kernel(const LatticeBonds& on);
   void find_corrections();
-  void gather_row(const LatticeBonds& on, std::size_t row, std::span<const double> u,
-                  std::span<double> force) const;
   void gather_point(std::size_t point, std::span<const double> u, std::span<double> force) const;
   void pull_inclusions(std::span<const double> u, std::span<double> force) const;
 
@@ -77,16 +76,8 @@ class BondMembrane final : public PointModel {
   std::vector<double> volume_;  // m^3, of ghosts that of the point they mirror
   std::vector<double> share_;   // of a bond's force that the point's entry gets: 1, ghosts 1/2
   std::array<std::vector<double>, 2> correction_;
-
-  /// Constants of one bond of the stencil.
-  struct StencilBond {
-    std::ptrdiff_t shift;
-    double x, y;       // m
-    double inverse2;   // 1/length^2
-    double stiffness;  // 4 c0 delta / length^3
-    double nx2, ny2;   // squared direction cosines
-  };
-  std::vector<StencilBond> stencil_;  // empty for listed bodies
+  BondMembraneKernel kernel_;
+  BondMembraneLattice lattice_;  // unused for listed bodies
 };
 
 }  // namespace riven

@@ -17,6 +17,15 @@ inline double area_ratio_squared(double a, double b) {
   return 3 * a * a - 2 * b;
 }
 
+// Below this share of a^2 the squared area ratio says that the family has collapsed: far above rounding, and
+// far below what sound states reach. Uniaxial stretch l has the share 4/l^3, so the 1e-3 of theory section 5
+// would stop at l = 16, which points at the corners of a slot pass on fine lattices.
+inline constexpr double kCollapse = 1e-7;
+
+inline bool collapsed(double a, double b) {
+  return !(area_ratio_squared(a, b) > kCollapse * a * a);
+}
+
 template <class Law>
 FamilyEnergy family_energy(const Law& law, double a, double b) {
   const double j2 = area_ratio_squared(a, b);

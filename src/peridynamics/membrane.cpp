@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/error.hpp"
+#include "base/lanes.hpp"
 #include "base/parallel.hpp"
 #include "peridynamics/family_energy.hpp"
 
@@ -27,37 +28,85 @@ Eigen::Vector2d plane(const Point& p) {
   return {p[0], p[1]};
 }
 
+/// From its entries row by row.
+Eigen::Matrix2d matrix(const std::array<double, 4>& entries) {
+  return Eigen::Map<const Eigen::Matrix<double, 2, 2, Eigen::RowMajor>>(entries.data());
+}
+
 }  // namespace
 
 Membrane::Membrane(Body body, Material material, double stabilisation)
     : PointModel(std::move(body), material.density),
       material_(std::move(material)),
-      stabilisation_(stabilisation) {
+      stabilisation_(stabilisation),
+      kernels_(membrane_kernels()) {
   if (this->body().dimension != 2)
     throw InputError("a membrane is two-dimensional: give the box two sizes and a thickness");
   const std::size_t n = this->body().size();
+  planes_.volume = this->body().volume.data();
   for (auto* plane :
-       {&kappa_, &smallest_weight_, &mean_s2_, &mean_s4_, &energy_density_, &force_a_, &force_b_})
+       {&planes_.kappa, &planes_.mean_s2, &planes_.mean_s4, &planes_.energy_density, &smallest_weight_})
     plane->assign(n, 0.0);
-  for (auto& plane : coefficient_) plane.assign(n, 0.0);
-  for (auto& plane : mean_gradient_) plane.assign(n, 0.0);
-  for (auto& plane : force_n_) plane.assign(n, 0.0);
-  listed_index_.assign(n, -1);
-  make_stencil_weights();
+  for (auto& plane : planes_.mean_gradient) plane.assign(n, 0.0);
+  look_at_bonds();
   make_families();
   sort_incoming();
 }
 
-void Membrane::make_stencil_weights() {
-  const LatticeBonds* on = body().on_lattice();
-  if (on == nullptr) return;
-  collapsed_in_row_.assign(on->lattice.rows(), -1);
-  for (std::size_t k = 0; k < on->stencil.size(); ++k) {
-    const PlaneBond bond{on->stencil.bond[k][0], on->stencil.bond[k][1]};
-    const double length = on->stencil.length[k];
+/// Shows the kernels the body's bonds.
+void Membrane::look_at_bonds() {
+  const std::size_t n = body().size();
+  if (const auto* list = std::get_if<ListedBonds>(&body().bonds)) {
+    list_.begin = list->begin.data();
+    list_.neighbour = list->neighbour.data();
+    list_.masks = list->masks.data();
+    list_.points.resize(n);
+    for (std::size_t i = 0; i < n; ++i) list_.points[i].x = {list->position[i][0], list->position[i][1]};
+    return;
+  }
+  const LatticeBonds& on = *body().on_lattice();
+  lattice_.masks = on.bonds.masks(0);
+  for (std::size_t block = 0; block < n / kLanes; ++block) lattice_.blocks.push_back(on.bonds.kind(block));
+  for (std::size_t k = 0; k < on.stencil.size(); ++k) {
+    const PlaneBond bond{on.stencil.bond[k][0], on.stencil.bond[k][1]};
+    const double length = on.stencil.length[k];
     Moments weight = angular_functions(bond);
-    for (double& w : weight) w /= length;
-    stencil_.push_back({on->stencil.shift[k], bond.x, bond.y, 1 / (length * length), weight});
+    for (double& w : weight) w /= length * length * length;
+    lattice_.stencil.push_back({on.stencil.shift[k], bond.x, bond.y, 1 / (length * length), weight});
+  }
+  for (auto* plane : {&lattice_.a, &lattice_.b}) plane->assign(n, 0.0);
+  for (auto& plane : lattice_.coefficient) plane.assign(n, 0.0);
+  for (auto& plane : lattice_.n) plane.assign(n, 0.0);
+}
+
+Moments Membrane::coefficients(std::size_t point) const {
+  if (body().on_lattice() == nullptr) return list_.points[point].coefficient;
+  Moments c{};
+  for (std::size_t m = 0; m < kMoments; ++m) c[m] = lattice_.coefficient[m][point];
+  return c;
+}
+
+void Membrane::set_coefficients(std::size_t point, const Moments& coefficients) {
+  if (body().on_lattice() == nullptr) {
+    list_.points[point].coefficient = coefficients;
+    return;
+  }
+  for (std::size_t m = 0; m < kMoments; ++m) lattice_.coefficient[m][point] = coefficients[m];
+}
+
+/// A block stays intact only where its points and all their neighbours have the weights of a whole family.
+void Membrane::find_intact_blocks(const Moments& whole) {
+  for (MembraneBondOffset& bond : lattice_.stencil) {
+    bond.whole_weight = 0;
+    for (std::size_t m = 0; m < kMoments; ++m) bond.whole_weight += whole[m] * bond.weight[m];
+  }
+  const auto is_whole = [&](std::size_t i) { return coefficients(i) == whole; };
+  for (std::size_t i = 0; i < body().size(); ++i) {
+    BlockKind& kind = lattice_.blocks[i / kLanes];
+    if (kind != BlockKind::intact) continue;
+    bool sound = is_whole(i);
+    body().for_each_neighbour(i, [&](std::size_t j) { sound = sound && is_whole(j); });
+    if (!sound) kind = BlockKind::partial;
   }
 }
 
@@ -97,19 +146,20 @@ double Membrane::stabilisation_modulus(std::size_t point) const {
 void Membrane::make_families() {
   FamilyWeights whole;  // most points of a lattice have the whole stencil: solve for it once
   for (const std::size_t i : body().points) {
-    kappa_[i] = stabilisation_modulus(i);
+    planes_.kappa[i] = stabilisation_modulus(i);
     const bool at_interface = !body().interface_of(i).empty();
     const bool is_whole = body().complete[i] && !at_interface && body().on_lattice() != nullptr;
     FamilyWeights weights =
         is_whole && !whole.weight.empty() ? whole : moment_corrected_weights(unshortened_bonds_of(i));
     if (is_whole && whole.weight.empty()) whole = weights;
     smallest_weight_[i] = weights.smallest_ratio;
-    if (weights.kind == FamilyWeights::Kind::smooth && !at_interface && body().on_lattice() != nullptr) {
-      for (std::size_t m = 0; m < kMoments; ++m) coefficient_[m][i] = weights.coefficients[m];
+    if (weights.kind == FamilyWeights::Kind::smooth && !at_interface) {
+      set_coefficients(i, weights.coefficients);
     } else {
       add_listed_family(i, weights, bonds_of(i));
     }
   }
+  if (body().on_lattice() != nullptr) find_intact_blocks(whole.coefficients);
 }
 
 void Membrane::add_listed_family(std::size_t point, const FamilyWeights& weights,
@@ -138,7 +188,6 @@ void Membrane::add_listed_family(std::size_t point, const FamilyWeights& weights
     list.end.push_back(bond.end);
   }
   family.end = list.end.size();
-  listed_index_[point] = static_cast<std::ptrdiff_t>(listed_.size());
   listed_.push_back(family);
 }
 
@@ -185,7 +234,8 @@ Eigen::Vector2d Membrane::deformed(std::size_t point, const MembraneBond& bond,
 Eigen::Vector2d Membrane::bond_force(const PointForce& law, const MembraneBond& bond,
                                      const Eigen::Vector2d& y) {
   const double inverse2 = 1 / bond.reference.squaredNorm();
-  return bond.weight * inverse2 * ((law.a + law.b * y.squaredNorm() * inverse2) * y + law.n * bond.reference);
+  return bond.weight * inverse2 *
+         ((law.a + law.b * y.squaredNorm() * inverse2) * y + matrix(law.n) * bond.reference);
 }
 
 std::size_t Membrane::points_by_least_squares() const {
@@ -207,10 +257,11 @@ std::vector<std::string> Membrane::describe() const {
 }
 
 std::size_t Membrane::bytes() const {
-  constexpr std::size_t planes = kMoments + 4 + 4 + 7;  // doubles per stored point
+  const std::size_t planes = 9 + (body().on_lattice() != nullptr ? kMoments + 6 : 0);
   constexpr std::size_t per_bond = 5 * sizeof(double) + 2 * sizeof(End);
-  return body().bytes() + body().size() * (planes * sizeof(double) + sizeof(std::ptrdiff_t)) +
-         listed_.size() * sizeof(ListedFamily) + listed_bonds_.end.size() * per_bond +
+  return body().bytes() + body().size() * planes * sizeof(double) + lattice_.blocks.size() +
+         list_.points.size() * sizeof(MembranePoint) + listed_.size() * sizeof(ListedFamily) +
+         listed_bonds_.end.size() * per_bond +
          listed_bonds_.target.size() * (sizeof(End) + sizeof(std::size_t));
 }
 
@@ -218,14 +269,14 @@ double Membrane::strain_energy(std::span<const double> u) {
   update_points(u);
   return ordered_sum_of(body().points.size(), [&](std::size_t n) {
     const std::size_t i = body().points[n];
-    return body().volume[i] * energy_density_[i];
+    return body().volume[i] * planes_.energy_density[i];
   });
 }
 
 std::optional<Breakdown> Membrane::inspect(std::span<const double> u) {
   update_points(u);
   if (auto breakdown = first_collapsed()) return breakdown;
-  const auto& g = mean_gradient_;
+  const auto& g = planes_.mean_gradient;
   for (const std::size_t i : body().points)
     if (!(g[0][i] * g[3][i] - g[1][i] * g[2][i] > 0))
       return Breakdown{
@@ -248,7 +299,7 @@ std::vector<ModelField> Membrane::fields(std::span<const double> u) {
   ModelField energy{"strain_energy_density", 1, {}}, stress{"nominal_stress", 9, {}},
       weight{"weight_minimum", 1, {}};
   for (const std::size_t i : body().points) {
-    energy.values.push_back(energy_density_[i]);
+    energy.values.push_back(planes_.energy_density[i]);
     weight.values.push_back(smallest_weight_[i]);
     const Eigen::Matrix2d p = nominal_stress(i, u);
     stress.values.insert(stress.values.end(), {p(0, 0), p(0, 1), 0, p(1, 0), p(1, 1), 0, 0, 0, 0});
@@ -261,29 +312,32 @@ std::vector<ModelField> Membrane::fields(std::span<const double> u) {
 
 /// Half of the deformation gradient of a point's family.
 Eigen::Matrix2d Membrane::gradient(std::size_t point) const {
-  Eigen::Matrix2d half_f;
-  half_f << mean_gradient_[0][point], mean_gradient_[1][point], mean_gradient_[2][point],
-      mean_gradient_[3][point];
-  return half_f;
+  const auto& g = planes_.mean_gradient;
+  return matrix({g[0][point], g[1][point], g[2][point], g[3][point]});
 }
 
-/// The family of a point that goes by its deformation gradient, or null.
-const Membrane::ListedFamily* Membrane::gradient_family(std::size_t point) const {
-  if (listed_index_[point] < 0) return nullptr;
-  const ListedFamily& family = listed_[static_cast<std::size_t>(listed_index_[point])];
-  return family.by_gradient ? &family : nullptr;
+const Membrane::ListedFamily* Membrane::listed_family(std::size_t point) const {
+  const auto found = std::lower_bound(
+      listed_.begin(), listed_.end(), point,
+      [](const ListedFamily& family, std::size_t of_point) { return family.point < of_point; });
+  return found != listed_.end() && found->point == point ? &*found : nullptr;
+}
+
+bool Membrane::by_gradient(std::size_t point) const {
+  const ListedFamily* family = listed_family(point);
+  return family != nullptr && family->by_gradient;
 }
 
 /// Bounds of the second derivatives of a point's energy in its family sums, over the volume: by (a, b - 2 a0
 /// a), a0 the present a. In a homogeneous state the second of these does not move, while in a and b alone
 /// large numbers would cancel.
 std::array<double, 3> Membrane::family_curvature(std::size_t point) const {
-  const double a = mean_s2_[point], b = mean_s4_[point];
-  if (gradient_family(point)) {  // the energy is a function of F, and the one sum is F itself
+  const double a = planes_.mean_s2[point], b = planes_.mean_s4[point];
+  if (by_gradient(point)) {  // the energy is a function of F, and the one sum is F itself
     return {material_.plane_stress(2 * gradient(point)).tangent.norm(), 0, 0};
   }
   const FamilyEnergy e = std::visit([&](const auto& law) { return family_energy(law, a, b); }, material_.law);
-  const FamilyEnergy k = stiffened_modulus(kappa_[point], a, b);
+  const FamilyEnergy k = stiffened_modulus(planes_.kappa[point], a, b);
   const double z2 = a - 2 * gradient(point).squaredNorm();
   const double waa = e.waa + z2 * k.waa, wab = e.wab + z2 * k.wab, wbb = e.wbb + z2 * k.wbb;
   return {std::abs(waa + 4 * a * wab + 4 * a * a * wbb), std::abs(wab + 2 * a * wbb), std::abs(wbb)};
@@ -318,9 +372,11 @@ void Membrane::stiffness_bound(std::span<const double> u, std::span<double> boun
   std::vector<BondBound> family;
   for (const std::size_t i : body().points) {
     const PointForce law = point_force(i);
-    const ListedFamily* by_gradient = gradient_family(i);
+    const ListedFamily* gradient_family = by_gradient(i) ? listed_family(i) : nullptr;
     const FamilyEnergy kappa =
-        by_gradient ? FamilyEnergy{} : stiffened_modulus(kappa_[i], mean_s2_[i], mean_s4_[i]);
+        gradient_family != nullptr
+            ? FamilyEnergy{}
+            : stiffened_modulus(planes_.kappa[i], planes_.mean_s2[i], planes_.mean_s4[i]);
     const Eigen::Matrix2d f = 2 * gradient(i);
     FamilySum first, second, modulus, inhomogeneity;
     family.clear();
@@ -329,9 +385,10 @@ void Membrane::stiffness_bound(std::span<const double> u, std::span<double> boun
       const double inverse2 = 1 / bond.reference.squaredNorm(), s2 = y.squaredNorm() * inverse2;
       const double block = bond.weight * inverse2 * (std::abs(law.a + law.b * s2) + 2 * std::abs(law.b) * s2);
       Eigen::Vector2d ga = 2 * bond.weight * inverse2 * y;
-      const Eigen::Vector2d gb = 2 * (s2 - mean_s2_[i]) * ga;
+      const Eigen::Vector2d gb = 2 * (s2 - planes_.mean_s2[i]) * ga;
       // F moves by an end's displacement times this; long where the bonds lie nearly on one line.
-      if (by_gradient) ga = bond.weight * inverse2 * (by_gradient->inverse_shape * bond.reference);
+      if (gradient_family != nullptr)
+        ga = bond.weight * inverse2 * (gradient_family->inverse_shape * bond.reference);
       first.add(ga);
       second.add(gb);
       const Eigen::Vector2d gk = (kappa.wa + 2 * s2 * kappa.wb) * ga;

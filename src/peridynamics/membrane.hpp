@@ -2,9 +2,11 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "material/material.hpp"
+#include "peridynamics/membrane_kernels.hpp"
 #include "peridynamics/point_model.hpp"
 #include "peridynamics/weights.hpp"
 
@@ -16,14 +18,6 @@ struct MembraneBond {
   double weight = 0;          // sum over the family is 1
   std::uint32_t end = 0;      // stored point, or body().size() plus the number of the interface bond
   int inclusion = -1;         // number of the inclusion, or -1
-};
-
-/// Force law of a point, times its volume: bond j carries weight/|xi|^2 ((a + b s^2) Y + n xi), where xi and
-/// Y are the undeformed and deformed bond and s their ratio. Every kind of point has this form.
-struct PointForce {
-  double a = 0;  // N m, as are b and n
-  double b = 0;
-  Eigen::Matrix2d n = Eigen::Matrix2d::Zero();
 };
 
 /// Ordinary state-based incompressible membrane for any isotropic W(I1, I2) and any loading: peridynamics
@@ -62,8 +56,8 @@ class Membrane final : public PointModel {
   [[nodiscard]] std::size_t points_by_gradient() const;
 
  private:
-  /// A point whose family does not follow the lattice's formula: those of listed bodies, and on a lattice
-  /// those with repaired weights or bonds to inclusions.
+  /// A point whose weights have no formula: repaired ones, bonds to inclusions, the deformation gradient as
+  /// a fall-back.
   struct ListedFamily {
     Eigen::Matrix2d inverse_shape = Eigen::Matrix2d::Zero();  // (sum w n n^T)^-1, for by_gradient
     std::size_t point = 0;
@@ -90,8 +84,11 @@ class Membrane final : public PointModel {
   /// The part of a bond's force that belongs to one end: weight/|xi|^2 ((a + b s^2) Y + n xi) (N).
   static Eigen::Vector2d bond_force(const PointForce& law, const MembraneBond& bond,
                                     const Eigen::Vector2d& y);
-  void make_stencil_weights();
+  void look_at_bonds();
   void make_families();
+  void set_coefficients(std::size_t point, const Moments& coefficients);
+  [[nodiscard]] Moments coefficients(std::size_t point) const;
+  void find_intact_blocks(const Moments& whole);
   void add_listed_family(std::size_t point, const FamilyWeights& weights, std::vector<MembraneBond> bonds);
   void sort_incoming();
   [[nodiscard]] std::vector<MembraneBond> bonds_of(std::size_t point) const;
@@ -100,65 +97,58 @@ class Membrane final : public PointModel {
   [[nodiscard]] double stabilisation_modulus(std::size_t point) const;
 
   void update_points(std::span<const double> u);
-  void average_row(const LatticeBonds& on, std::size_t row, std::span<const double> u);
-  template <class Law>
-  void respond_row(const Law& law, const Lattice& lattice, std::size_t row);
   void respond_listed(const ListedFamily& family, std::span<const double> u);
   void set_point(std::size_t point, double energy, const PointForce& force);
-  [[nodiscard]] PointForce point_force(std::size_t point) const;
-  void gather_row(const LatticeBonds& on, std::size_t row, std::span<const double> u,
-                  std::span<double> force) const;
+  [[nodiscard]] PointForce point_force(std::size_t point) const {
+    return body().on_lattice() != nullptr ? lattice_.law(point) : list_.law(point);
+  }
   void pull_listed(const ListedFamily& family, std::span<const double> u, std::span<double> force);
   void push_far_ends(std::span<double> force) const;
   [[nodiscard]] std::optional<Breakdown> first_collapsed() const;
   [[nodiscard]] Eigen::Matrix2d gradient(std::size_t point) const;
-  [[nodiscard]] const ListedFamily* gradient_family(std::size_t point) const;
+  /// The family of a point without formula, or null.
+  [[nodiscard]] const ListedFamily* listed_family(std::size_t point) const;
+  [[nodiscard]] bool by_gradient(std::size_t point) const;
   [[nodiscard]] std::array<double, 3> family_curvature(std::size_t point) const;
 
   Material material_;
   double stabilisation_ = 0;
   std::vector<ListedFamily> listed_;  // in order of their points
   ListedFamilyBonds listed_bonds_;
-  std::vector<std::ptrdiff_t> listed_index_;  // per stored point, -1 for formula points
 
-  using Plane = std::vector<double>;
-  std::array<Plane, kMoments> coefficient_;  // of the angular functions; 0 for listed points
-  Plane kappa_;                              // modulus of the stabilisation (Pa)
-  Plane smallest_weight_;                    // of the family over its base weight, before any repair
-  // Family averages <s^2>, <s^4>, <Y xi^T / |xi|^2>, then what follows from them; valid for one state.
-  Plane mean_s2_, mean_s4_;
-  std::array<Plane, 4> mean_gradient_;
-  Plane energy_density_, force_a_, force_b_;
-  std::array<Plane, 4> force_n_;
-  std::vector<std::ptrdiff_t> collapsed_in_row_;  // first point of the row whose J^2 collapsed, or -1
-
-  /// Constants of one bond of the stencil.
-  struct StencilBond {
-    std::ptrdiff_t shift;
-    double x, y;      // m
-    double inverse2;  // 1/length^2
-    Moments weight;   // angular functions / length
-  };
-  std::vector<StencilBond> stencil_;  // empty for listed bodies
+  MembraneKernels kernels_;
+  MembranePlanes planes_;
+  MembraneLattice lattice_;  // one of both is in use
+  MembraneList list_;
+  std::vector<double> smallest_weight_;  // of the family over its base weight, before any repair
+  std::size_t collapsed_ = 0;            // families with a formula, in the present state
 };
 
 template <class Visit>
 void Membrane::for_each_bond(std::size_t point, const Visit& visit) const {
-  if (listed_index_[point] >= 0) {
-    const ListedFamily& family = listed_[static_cast<std::size_t>(listed_index_[point])];
-    for (std::size_t b = family.begin; b < family.end; ++b) visit(listed_bond(b));
+  if (const ListedFamily* family = listed_family(point)) {
+    for (std::size_t b = family->begin; b < family->end; ++b) visit(listed_bond(b));
     return;
   }
-  const LatticeBonds& on = *body().on_lattice();
-  for (std::size_t k = 0; k < stencil_.size(); ++k) {
-    if (!on.bonds.exists(k, point)) continue;
+  const Moments c = coefficients(point);
+  const auto visit_bond = [&](double x, double y, std::size_t end) {
+    const Moments angular = angular_functions({x, y});
     double weight = 0;
-    for (std::size_t m = 0; m < kMoments; ++m) weight += coefficient_[m][point] * stencil_[k].weight[m];
-    visit(MembraneBond{{stencil_[k].x, stencil_[k].y},
-                       weight,
-                       static_cast<End>(BondPlanes::neighbour(on.stencil, k, point)),
-                       -1});
+    for (std::size_t m = 0; m < kMoments; ++m) weight += c[m] * angular[m];
+    visit(MembraneBond{{x, y}, weight / std::sqrt(x * x + y * y), static_cast<End>(end), -1});
+  };
+  if (const LatticeBonds* on = body().on_lattice()) {
+    for (std::size_t k = 0; k < lattice_.stencil.size(); ++k)
+      if (on->bonds.exists(k, point))
+        visit_bond(lattice_.stencil[k].x, lattice_.stencil[k].y,
+                   BondPlanes::neighbour(on->stencil, k, point));
+    return;
   }
+  const Point from = body().position(point);
+  body().for_each_neighbour(point, [&](std::size_t j) {
+    const Point to = body().position(j);
+    visit_bond(to[0] - from[0], to[1] - from[1], j);
+  });
 }
 
 }  // namespace riven

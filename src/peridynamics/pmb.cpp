@@ -108,14 +108,9 @@ std::vector<std::uint8_t>& Pmb::own_masks() {
 
 /// Finds the kind of every block from its bits.
 void Pmb::sort_blocks() {
-  const std::size_t count = lattice_.stencil.size();
-  for (std::size_t block = 0; block < lattice_.blocks.size(); ++block) {
-    const std::uint8_t* masks = lattice_.masks + block * count;
-    const auto all = [&](std::uint8_t value) {
-      return std::all_of(masks, masks + count, [value](std::uint8_t mask) { return mask == value; });
-    };
-    lattice_.blocks[block] = all(0) ? BlockKind::empty : all(0xff) ? BlockKind::intact : BlockKind::partial;
-  }
+  const LatticeBonds* on = body().on_lattice();
+  for (std::size_t block = 0; block < lattice_.blocks.size(); ++block)
+    lattice_.blocks[block] = on->bonds.kind(block);
 }
 
 void Pmb::save(Snapshot& to) const {

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "body/bond_planes.hpp"
+
 namespace riven {
 
 /// A bond of the stencil, as the kernels read it.
@@ -14,12 +16,6 @@ struct PmbBond {
   double length = 0;           // m
   double inverse_length = 0;   // 1/m
   double limit2 = 0;           // squared length at which it breaks (m^2)
-};
-
-enum class BlockKind : std::uint8_t {
-  empty,  // eight entries without a bond
-  partial,
-  intact,  // all eight have all bonds of the stencil
 };
 
 /// What the kernels see of a body on a lattice and of its state. Points are taken in blocks of eight.

@@ -39,6 +39,9 @@ class PointModel : public Model {
   /// `density` in kg/m^3, of the inclusions too. Throws InputError unless the inclusions are discs or boxes
   /// of a two-dimensional body.
   PointModel(Body body, double density);
+  // Kernels hold on to places in a model's vectors: those move with it, but a copy would look at the
+  // original.
+  PointModel(PointModel&&) = default;
 
   /// What a bond ends on: a stored point, or behind those the surface point of an interface bond.
   using End = std::uint32_t;
