@@ -78,7 +78,7 @@ void force(benchmark::State& state) {
 
 void arguments(benchmark::internal::Benchmark* bench) {
   bench->ArgNames({"listed", "threads", "isa", "side"})
-      ->ArgsProduct({{0, 1}, {1, 2}, {0, 1, 2}, {400}})
+      ->ArgsProduct({{0, 1}, {1, 2}, {0, 1, 2}, {100, 400}})
       ->MeasureProcessCPUTime()
       ->Unit(benchmark::kMicrosecond);
 }

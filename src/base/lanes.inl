@@ -52,8 +52,8 @@ RIVEN_INLINE void exchange(Register& a, Register& b, std::index_sequence<lane...
   a = upper;
 }
 
-/// Four doubles from each of eight places: lane l of to[n] is from[l][n].
-RIVEN_INLINE void load_fours(const double* const (&from)[kLanes], std::size_t offset, Lanes* to) {
+/// Four doubles from each of eight places: lane l of to[n] is from[l][offset + n].
+RIVEN_INLINE void load_fours(const double* const (&from)[kLanes], std::size_t offset, Lanes (&to)[4]) {
   constexpr std::size_t side = kRegister < 4 ? kRegister : 4;
   constexpr auto lanes = std::make_index_sequence<kRegister>();
   RIVEN_UNROLL
@@ -73,13 +73,6 @@ RIVEN_INLINE void load_fours(const double* const (&from)[kLanes], std::size_t of
       for (std::size_t m = 0; m < side; ++m) to[n + m].part[p] = row[m];
     }
   }
-}
-
-/// The first N doubles, a multiple of four, at each of eight places: lane l of to[n] is from[l][n].
-template <std::size_t N>
-RIVEN_INLINE void load_across(const double* const (&from)[kLanes], Lanes (&to)[N]) {
-  RIVEN_UNROLL
-  for (std::size_t n = 0; n < N; n += 4) load_fours(from, n, to + n);
 }
 
 #define RIVEN_LANES_OPERATOR(op)                                                     \

@@ -70,7 +70,7 @@ void Membrane::look_at_bonds() {
   for (std::size_t k = 0; k < on.stencil.size(); ++k) {
     const PlaneBond bond{on.stencil.bond[k][0], on.stencil.bond[k][1]};
     const double length = on.stencil.length[k];
-    Moments weight = angular_functions(bond);
+    Moments weight = WeightFormula::terms(angular_functions(bond));
     for (double& w : weight) w /= length * length * length;
     lattice_.stencil.push_back({on.stencil.shift[k], bond.x, bond.y, 1 / (length * length), weight});
   }
@@ -154,12 +154,12 @@ void Membrane::make_families() {
     if (is_whole && whole.weight.empty()) whole = weights;
     smallest_weight_[i] = weights.smallest_ratio;
     if (weights.kind == FamilyWeights::Kind::smooth && !at_interface) {
-      set_coefficients(i, weights.coefficients);
+      set_coefficients(i, WeightFormula::coefficients(weights.coefficients));
     } else {
       add_listed_family(i, weights, bonds_of(i));
     }
   }
-  if (body().on_lattice() != nullptr) find_intact_blocks(whole.coefficients);
+  if (body().on_lattice() != nullptr) find_intact_blocks(WeightFormula::coefficients(whole.coefficients));
 }
 
 void Membrane::add_listed_family(std::size_t point, const FamilyWeights& weights,

@@ -132,9 +132,9 @@ void Membrane::for_each_bond(std::size_t point, const Visit& visit) const {
   }
   const Moments c = coefficients(point);
   const auto visit_bond = [&](double x, double y, std::size_t end) {
-    const Moments angular = angular_functions({x, y});
+    const Moments terms = WeightFormula::terms(angular_functions({x, y}));
     double weight = 0;
-    for (std::size_t m = 0; m < kMoments; ++m) weight += c[m] * angular[m];
+    for (std::size_t m = 0; m < kMoments; ++m) weight += c[m] * terms[m];
     visit(MembraneBond{{x, y}, weight / std::sqrt(x * x + y * y), static_cast<End>(end), -1});
   };
   if (const LatticeBonds* on = body().on_lattice()) {

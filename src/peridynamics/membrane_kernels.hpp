@@ -19,6 +19,20 @@ struct PointForce {
   std::array<double, 4> n{};  // row by row
 };
 
+/// The weight of a bond at the angle t, times its length: a combination of 1, c, s, s^2 and c s with c = cos
+/// 2t and s = sin 2t, which spans the same functions as eq. (10) of the theory with fewer operations.
+struct WeightFormula {
+  static Moments terms(const Moments& angular) {
+    const auto& [one, c, s, c4, s4] = angular;
+    return {one, c, s, s * s, c * s};
+  }
+  /// From the coefficients of 1, cos 2t, sin 2t, cos 4t, sin 4t.
+  static Moments coefficients(const Moments& of_angular) {
+    const auto& [k1, kc, ks, kc4, ks4] = of_angular;
+    return {k1 + kc4, kc, ks, -2 * kc4, 2 * ks4};
+  }
+};
+
 /// What the kernels take and give for every stored point, however bonds are stored. The averages <s^2>, <s^4>
 /// and <Y xi^T / |xi|^2> are those of the family, valid for one state as is what follows from them.
 struct MembranePlanes {
@@ -34,7 +48,7 @@ struct MembraneBondOffset {
   std::ptrdiff_t shift = 0;  // to the neighbour, in storage entries
   double x = 0, y = 0;       // m
   double inverse2 = 0;       // 1/length^2
-  Moments weight{};          // angular functions / length^3: times a point's coefficients w / length^2
+  Moments weight{};          // of WeightFormula, / length^3: times a point's coefficients w / length^2
   double whole_weight = 0;   // w / length^2 in a whole family
 };
 

@@ -131,18 +131,26 @@ inline void gather(const MembraneLattice& on, std::size_t begin, std::size_t end
 
 // ---- listed bonds ----
 
-/// Eight bonds of a point: x, y undeformed, yx, yy deformed (m); the first n of `far` what was read there.
-template <std::size_t N>
-struct BondsOfPoint {
-  Lanes far[N], x, y, yx, yy, inverse2;
-  Lanes angular[kMoments];  // functions / length^3, 0 where there is no bond
+/// Where the other ends of eight bonds of a point lie: points as MembranePoint has them, four doubles at a
+/// time.
+struct FarEnds {
+  const double* at[kLanes];
 
-  RIVEN_INLINE BondsOfPoint(const MembraneList& list, std::size_t point, std::size_t first, Mask exists) {
-    const double* from[kLanes];
+  RIVEN_INLINE FarEnds(const MembraneList& list, std::size_t first) {
     RIVEN_UNROLL
-    for (std::size_t l = 0; l < kLanes; ++l) from[l] = list.points[list.neighbour[first + l]].x.data();
-    load_across(from, far);
-    const MembranePoint& own = list.points[point];
+    for (std::size_t l = 0; l < kLanes; ++l) at[l] = list.points[list.neighbour[first + l]].x.data();
+  }
+};
+
+/// Eight bonds of a point: x, y undeformed, yx, yy deformed (m).
+struct BondsOfPoint {
+  Lanes x, y, yx, yy, inverse2;
+  Lanes inverse3;  // 1/length^3, 0 where there is no bond
+  Lanes c, s;      // cosine and sine of twice a bond's angle
+
+  RIVEN_INLINE BondsOfPoint(const MembranePoint& own, const FarEnds& ends, Mask exists) {
+    Lanes far[4];
+    load_fours(ends.at, 0, far);
     x = far[0] - own.x[0];
     y = far[1] - own.x[1];
     yx = x + (far[2] - own.u[0]);
@@ -150,37 +158,34 @@ struct BondsOfPoint {
     // An entry that is no bond may be the point itself, at length 0.
     const Lanes inverse = select(exists, inverse_root(x * x + y * y));
     inverse2 = inverse * inverse;
-    const Lanes c2 = (x * x - y * y) * inverse2, s2 = 2.0 * x * y * inverse2;
-    angular[0] = inverse * inverse2;
-    angular[1] = c2 * angular[0];
-    angular[2] = s2 * angular[0];
-    angular[3] = (c2 * c2 - s2 * s2) * angular[0];
-    angular[4] = 2.0 * c2 * angular[2];
-  }
-  /// Weights over |xi|^2 in the family with these coefficients, the same seen from both ends.
-  template <class Coefficient>
-  RIVEN_INLINE Lanes weight(const Coefficient& coefficient) const {
-    Lanes weight = angular[0] * coefficient[0];
-    RIVEN_UNROLL
-    for (std::size_t m = 1; m < kMoments; ++m) weight += angular[m] * coefficient[m];
-    return weight;
+    inverse3 = inverse * inverse2;
+    c = (x * x - y * y) * inverse2;
+    s = (x + x) * y * inverse2;
   }
 };
 
-/// Calls visit(eight bonds) for the bonds of a point, with the first N doubles of the other ends.
-template <std::size_t N, class Visit>
+/// Calls visit(eight bonds, their other ends) for the bonds of a point.
+template <class Visit>
 RIVEN_INLINE void for_each_eight(const MembraneList& list, std::size_t point, const Visit& visit) {
   const std::uint8_t* masks = list.masks + list.begin[point] / 8 + point;
-  for (std::size_t n = list.begin[point]; n < list.begin[point + 1]; n += kLanes, ++masks)
-    if (*masks != 0) visit(BondsOfPoint<N>(list, point, n, expand(*masks)));
+  for (std::size_t n = list.begin[point]; n < list.begin[point + 1]; n += kLanes, ++masks) {
+    if (*masks == 0) continue;
+    const FarEnds ends(list, n);
+    visit(BondsOfPoint(list.points[point], ends, expand(*masks)), ends);
+  }
+}
+
+/// Weights over |xi|^2 in the point's own family.
+RIVEN_INLINE Lanes own_weight(const Moments& k, const BondsOfPoint& at) {
+  return at.inverse3 * (k[0] + k[1] * at.c + at.s * (k[2] + k[3] * at.s + k[4] * at.c));
 }
 
 inline void average(const MembraneList& list, MembranePlanes& planes, std::size_t begin, std::size_t end) {
   for (std::size_t i = begin; i < end; ++i) {
     if (!list.has_coefficients(i)) continue;
     FamilySums sums;
-    for_each_eight<4>(list, i, [&](const BondsOfPoint<4>& bonds) RIVEN_INLINED {
-      sums.add(bonds.weight(list.points[i].coefficient), bonds.x, bonds.y, bonds.yx, bonds.yy,
+    for_each_eight(list, i, [&](const BondsOfPoint& bonds, const FarEnds&) RIVEN_INLINED {
+      sums.add(own_weight(list.points[i].coefficient, bonds), bonds.x, bonds.y, bonds.yx, bonds.yy,
                bonds.inverse2);
     });
     planes.mean_s2[i] = sum(sums.s2);
@@ -194,16 +199,23 @@ inline void gather(const MembraneList& list, std::size_t begin, std::size_t end)
   for (std::size_t i = begin; i < end; ++i) {
     const MembranePoint& point = list.points[i];
     Lanes fx = broadcast(0), fy = fx, own_x = fx, own_y = fx;
-    for_each_eight<16>(list, i, [&](const BondsOfPoint<16>& bonds) RIVEN_INLINED {
-      const auto& far = bonds.far;  // in the order of MembranePoint
-      const Lanes own = bonds.weight(point.coefficient), of_far = bonds.weight(far + 4);
-      const Lanes s2 = (bonds.yx * bonds.yx + bonds.yy * bonds.yy) * bonds.inverse2;
-      const Lanes pull = own * (point.law.a + point.law.b * s2) + of_far * (far[9] + far[10] * s2);
+    for_each_eight(list, i, [&](const BondsOfPoint& bonds, const FarEnds& ends) RIVEN_INLINED {
+      const Lanes own = own_weight(point.coefficient, bonds);
       own_x += own * bonds.x;
       own_y += own * bonds.y;
-      const Lanes wx = of_far * bonds.x, wy = of_far * bonds.y;
-      fx += pull * bonds.yx + far[11] * wx + far[12] * wy;
-      fy += pull * bonds.yy + far[13] * wx + far[14] * wy;
+      const Lanes s2 = (bonds.yx * bonds.yx + bonds.yy * bonds.yy) * bonds.inverse2;
+      Lanes pull = own * (point.law.a + point.law.b * s2), far[4];
+      load_fours(ends.at, 4, far);
+      Lanes weight = far[0] + far[1] * bonds.c + bonds.s * (far[2] + far[3] * bonds.s);
+      load_fours(ends.at, 8, far);
+      weight = bonds.inverse3 * (weight + bonds.s * bonds.c * far[0]);
+      pull += weight * (far[1] + far[2] * s2);
+      const Lanes wx = weight * bonds.x, wy = weight * bonds.y;
+      fx += pull * bonds.yx + far[3] * wx;
+      fy += pull * bonds.yy;
+      load_fours(ends.at, 12, far);
+      fx += far[0] * wy;
+      fy += far[1] * wx + far[2] * wy;
     });
     const auto& n = point.law.n;
     list.force[0][i] = sum(fx + n[0] * own_x + n[1] * own_y);
