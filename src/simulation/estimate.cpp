@@ -29,7 +29,7 @@ struct Footprint {
 Footprint footprint(const std::string& model_kind) {
   if (model_kind == "membrane-bond") return {90, 5};
   if (model_kind == "pmb") return {80, 20};
-  return {220, 54};
+  return {220, 6};
 }
 
 double points_along(const Shape& shape, double spacing, std::size_t axis) {

@@ -129,7 +129,7 @@ class Verlet {
     work_.begin(constraints_, 0);
     estimate_step();
     balance();
-    state_.energy.external_work = state_.energy.kinetic + state_.energy.strain;
+    state_.energy.external_work = state_.energy.kinetic + state_.energy.strain + state_.energy.dissipated;
     observer_.reached(state_, constraints_, true);
     plan();
   }
@@ -248,9 +248,9 @@ class Verlet {
   }
 
   void check_energy() const {
-    if (!model_.conservative()) return;  // its balance tells nothing
     const double error = state_.energy.error();
-    if (std::abs(error) <= kRunaway || state_.energy.largest <= rounding_energy()) return;
+    if (!model_.conservative() || std::abs(error) <= kRunaway || state_.energy.largest <= rounding_energy())
+      return;
     const std::size_t fastest = Watchdog::largest(state_.v);
     throw SolverFailure(
         fmt::format("at t = {:.6g} s, step {}, the energy runs away: {:.1f} % of it came from nowhere; the "

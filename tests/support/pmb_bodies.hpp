@@ -3,10 +3,10 @@
 #include <limits>
 #include <vector>
 
-#include "base/instruction_set.hpp"
 #include "body/lattice_body.hpp"
 #include "body/listed_body.hpp"
 #include "peridynamics/pmb.hpp"
+#include "support/instruction_sets.hpp"
 #include "support/random.hpp"
 
 namespace riven::testing {
@@ -44,13 +44,6 @@ inline LatticeBodyInput random_cells(Random& random, int dimension, bool mirrore
 }
 
 inline constexpr PmbSettings kGlass{.youngs_modulus = 72e9, .density = 2440};
-
-inline std::vector<InstructionSet> supported_sets() {
-  std::vector<InstructionSet> sets;
-  for (const auto set : {InstructionSet::portable, InstructionSet::avx2, InstructionSet::avx512})
-    if (supported(set)) sets.push_back(set);
-  return sets;
-}
 
 /// Stored points that are body or ghost.
 inline std::vector<std::size_t> bonded_points(const Body& body) {

@@ -12,18 +12,6 @@
 namespace riven::testing {
 namespace {
 
-/// Runs with one instruction set and puts the former one back.
-class UseSet {
- public:
-  explicit UseSet(InstructionSet set) : before_(instruction_set()) { use_instruction_set(set); }
-  ~UseSet() { use_instruction_set(before_); }
-  UseSet(const UseSet&) = delete;
-  UseSet& operator=(const UseSet&) = delete;
-
- private:
-  InstructionSet before_;
-};
-
 double largest(const std::vector<double>& values) {
   double most = 0;
   for (const double value : values) most = std::max(most, std::abs(value));
