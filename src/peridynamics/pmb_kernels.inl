@@ -159,18 +159,18 @@ double lattice_energy(const PmbLattice& on, std::size_t begin, std::size_t end) 
   return 0.25 * on.stiffness * sum(energy);
 }
 
-/// Bounds the rows of the tangent. A bond's block is c (1/L e e^T + (1/L - 1/r) (I - e e^T)); the point's own
-/// block is the sum over its bonds, of which the norm counts, and each far end has one of them.
+/// Own blocks of the tangent: a bond's is K = c (1/L e e^T + (1/L - 1/r) (I - e e^T)), and a point's is the
+/// sum of |K| over its bonds. The energy of a bond is at most that of its ends with the other one held,
+/// twice: (x_i - x_j) K (x_i - x_j) <= 2 x_i |K| x_i + 2 x_j |K| x_j. So no eigenvalue is above twice the
+/// largest own block, whatever the far ends do.
 template <int D>
-struct RowBound {
-  Lanes own[D][D];  // upper half
-  Lanes far;
+struct OwnBlock {
+  Lanes entry[D][D];  // upper half
 
-  RIVEN_INLINE RowBound() {
+  RIVEN_INLINE OwnBlock() {
     RIVEN_UNROLL
-    for (auto& row : own) RIVEN_UNROLL
-    for (Lanes& entry : row) entry = broadcast(0);
-    far = broadcast(0);
+    for (auto& row : entry) RIVEN_UNROLL
+    for (Lanes& value : row) value = broadcast(0);
   }
   RIVEN_INLINE void add(const Lanes (&y)[D], Lanes inverse_length, Mask exists, Lanes weight) {
     const Lanes inverse_r = inverse_root(dot(y, y));
@@ -180,16 +180,15 @@ struct RowBound {
     RIVEN_UNROLL
     for (int a = 0; a < D; ++a) {
       RIVEN_UNROLL
-      for (int b = a; b < D; ++b) own[a][b] += select(exists, excess * y[a] * y[b]);
-      own[a][a] += across;
+      for (int b = a; b < D; ++b) entry[a][b] += select(exists, excess * y[a] * y[b]);
+      entry[a][a] += across;
     }
-    far += maximum(along, across);
   }
 };
 
-/// Largest sum of |entries| in a row of the own block, plus the far ends.
+/// Twice the largest sum of |entries| in a row of the own block.
 template <int D>
-RIVEN_INLINE double row_bound(const double (&own)[D][D], double far) {
+RIVEN_INLINE double row_bound(const double (&own)[D][D]) {
   double largest = 0;
   RIVEN_UNROLL
   for (int a = 0; a < D; ++a) {
@@ -198,7 +197,7 @@ RIVEN_INLINE double row_bound(const double (&own)[D][D], double far) {
     for (int b = 0; b < D; ++b) row += __builtin_fabs(a < b ? own[a][b] : own[b][a]);
     largest = row > largest ? row : largest;
   }
-  return largest + far;
+  return 2 * largest;
 }
 
 template <int D>
@@ -207,18 +206,17 @@ void lattice_bound(const PmbLattice& on, std::size_t begin, std::size_t end) {
     const std::uint8_t* masks = on.masks + point / kLanes * on.stencil.size();
     Lanes u[D];
     load_displacements(on, point, u);
-    RowBound<D> rows;
+    OwnBlock<D> block;
     for (std::size_t k = 0; k < on.stencil.size(); ++k) {
       if (masks[k] == 0) continue;
       const PmbBond& bond = on.stencil[k];
-      rows.add(bonds_at(on, bond, point, u).y, broadcast(bond.inverse_length), expand(masks[k]),
-               weights_at(on, bond, point));
+      block.add(bonds_at(on, bond, point, u).y, broadcast(bond.inverse_length), expand(masks[k]),
+                weights_at(on, bond, point));
     }
-    double own[D][D][kLanes], far[kLanes];
+    double own[D][D][kLanes];
     RIVEN_UNROLL
     for (int a = 0; a < D; ++a) RIVEN_UNROLL
-    for (int b = a; b < D; ++b) store(own[a][b], rows.own[a][b]);
-    store(far, rows.far);
+    for (int b = a; b < D; ++b) store(own[a][b], block.entry[a][b]);
     for (std::size_t l = 0; l < kLanes; ++l) {
       double of_point[D][D];
       RIVEN_UNROLL
@@ -227,7 +225,7 @@ void lattice_bound(const PmbLattice& on, std::size_t begin, std::size_t end) {
       RIVEN_UNROLL
       for (int d = 0; d < D; ++d)
         on.out[static_cast<std::size_t>(d)][point + l] =
-            on.stiffness * on.weight[point + l] * row_bound(of_point, far[l]);
+            on.stiffness * on.weight[point + l] * row_bound(of_point);
     }
   }
 }
@@ -319,18 +317,18 @@ double listed_energy(const PmbList& list, std::size_t begin, std::size_t end) {
 template <int D>
 void listed_bound(const PmbList& list, std::size_t begin, std::size_t end) {
   for (std::size_t point = begin; point < end; ++point) {
-    RowBound<D> rows;
+    OwnBlock<D> block;
     for_each_eight<D>(list, point, [&](const ListedBonds8<D>& at, std::uint8_t bits) RIVEN_INLINED {
-      rows.add(at.bonds.y, at.inverse_length, expand(bits), at.weight);
+      block.add(at.bonds.y, at.inverse_length, expand(bits), at.weight);
     });
     double own[D][D];
     RIVEN_UNROLL
     for (int a = 0; a < D; ++a) RIVEN_UNROLL
-    for (int b = a; b < D; ++b) own[a][b] = sum(rows.own[a][b]);
+    for (int b = a; b < D; ++b) own[a][b] = sum(block.entry[a][b]);
     RIVEN_UNROLL
     for (int d = 0; d < D; ++d)
       list.out[static_cast<std::size_t>(d)][point] =
-          list.stiffness * list.points[point].weight * row_bound(own, sum(rows.far));
+          list.stiffness * list.points[point].weight * row_bound(own);
   }
 }
 

@@ -70,10 +70,10 @@ class Verlet {
     state_.u.assign(n_, 0.0);
     state_.v.assign(n_, 0.0);
     force_.assign(n_, 0.0);
-    mass_.assign(n_, 0.0);
-    model_.mass(mass_);
+    inverse_mass_.assign(n_, 0.0);
+    model_.mass(inverse_mass_);
     for (std::size_t i = 0; i < n_; ++i)
-      if (!constraints_.is_free(i)) mass_[i] = 0;
+      inverse_mass_[i] = constraints_.is_free(i) && inverse_mass_[i] > 0 ? 1 / inverse_mass_[i] : 0;
   }
 
   State run(const Snapshot* from) {
@@ -122,7 +122,7 @@ class Verlet {
     if (!settings_.initial_u.empty()) state_.u = settings_.initial_u;
     if (!settings_.initial_v.empty()) state_.v = settings_.initial_v;
     for (std::size_t i = 0; i < n_; ++i)
-      if (mass_[i] == 0) state_.v[i] = 0;
+      if (inverse_mass_[i] == 0) state_.v[i] = 0;
     constraints_.set_parameter(0);
     constraints_.apply(state_.u);
     evaluate();
@@ -191,8 +191,7 @@ class Verlet {
   void kick(double kick, double drift) {
     parallel_pieces(n_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        if (mass_[i] == 0) continue;
-        state_.v[i] += kick * force_[i] / mass_[i];
+        state_.v[i] += kick * force_[i] * inverse_mass_[i];
         state_.u[i] += drift * state_.v[i];
       }
     });
@@ -222,9 +221,11 @@ class Verlet {
                     state_.parameter, what));
   }
 
+  [[nodiscard]] double mass(std::size_t i) const { return inverse_mass_[i] > 0 ? 1 / inverse_mass_[i] : 0; }
+
   /// Energy of motions too small to tell from rounding: a body at rest keeps no balance worth watching.
   [[nodiscard]] double rounding_energy() const {
-    const double total = ordered_sum_of(n_, [&](std::size_t i) { return mass_[i]; });
+    const double total = ordered_sum_of(n_, [&](std::size_t i) { return mass(i); });
     const double speed = watchdog_.size() / step_;
     return 1e-18 * total * speed * speed;
   }
@@ -232,7 +233,7 @@ class Verlet {
   void balance() {
     EnergyBalance& energy = state_.energy;
     energy.kinetic =
-        ordered_sum_of(n_, [&](std::size_t i) { return 0.5 * mass_[i] * state_.v[i] * state_.v[i]; });
+        ordered_sum_of(n_, [&](std::size_t i) { return 0.5 * mass(i) * state_.v[i] * state_.v[i]; });
     energy.strain = model_.strain_energy(state_.u) - rest_energy_;
     energy.dissipated = model_.dissipated_energy();
     energy.largest = std::max({energy.largest, energy.kinetic, std::abs(energy.strain), energy.dissipated,
@@ -278,7 +279,8 @@ class Verlet {
   std::size_t n_;
   State state_;
   WorkIntegral work_{WorkIntegral::Rule::trapezoidal};
-  std::vector<double> force_, mass_;  // mass 0 where nothing is free to move
+  std::vector<double> force_;
+  std::vector<double> inverse_mass_;  // 0 where nothing is free to move
   double step_ = 0;
   long next_estimate_ = 0;  // number of the step after which the stable step is estimated again
   double rest_energy_ = 0;  // that the model has without displacement (J)

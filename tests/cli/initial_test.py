@@ -62,7 +62,7 @@ class Initial(ProgramTest):
         inclusion = '\n[[inclusion]]\ndisc = { radius = "20 mm" }\n'
         for text, said in {
                 FREE + twice: "component 0 of the velocity is given twice for the point at (",
-                FREE + initial('velocity = ["1 m", 0]'): "initial.0.velocity",
+                FREE + initial('velocity = ["1 m", 0]'): "initial.1.velocity",
                 FREE + initial('velocity = ["1 m/s * t", 0]'): "t",
                 FREE + initial('velocity = [1, 0]'): "1 has no unit",
                 FREE + initial('velocity = ["1 m/s"]'): "expected 2, one per direction",

@@ -120,7 +120,7 @@ to = ["70 mm", 0]
     def test_the_estimated_memory_is_what_a_run_takes(self):
         if b"__asan_init" in pathlib.Path(PROGRAM).read_bytes():
             self.skipTest("the sanitizer takes memory of its own")
-        for bonds, side in {"listed": 250, "lattice": 420}.items():
+        for bonds, side in {"listed": 360, "lattice": 420}.items():
             text = replaced(replaced(PLAIN, "points = [20, 20]", f"points = [{side}, {side}]"), "[1.2, 1.4]", "[1.001]")
             text = replaced(text, 'horizon = "3 dx"', f'horizon = "3 dx"\nbonds = "{bonds}"')
             case = self.write(f"{bonds}.toml", text)
