@@ -212,14 +212,11 @@ std::optional<Breakdown> Pmb::inspect(std::span<const double> /*u*/) {
 
 template <class Visit>
 void Pmb::for_each_pull(std::size_t point, std::span<const double> u, const Visit& visit) const {
-  const Point x = body().position(point);
-  body().for_each_neighbour(point, [&](std::size_t j) {
-    const Point y = body().position(j);
-    Pull pull{.neighbour = j, .reference = Eigen::Vector3d::Zero(), .deformed = {}};
+  const auto pull_of = [&](std::size_t j, const Point& xi) {
+    Pull pull{.neighbour = j, .reference = {xi[0], xi[1], xi[2]}, .deformed = {}};
     Eigen::Vector3d eta = Eigen::Vector3d::Zero();
     for (int d = 0; d < body().dimension; ++d) {
       const std::size_t plane = static_cast<std::size_t>(d) * body().size();
-      pull.reference[d] = y[static_cast<std::size_t>(d)] - x[static_cast<std::size_t>(d)];
       eta[d] = u[plane + j] - u[plane + point];
     }
     pull.deformed = pull.reference + eta;
@@ -228,6 +225,17 @@ void Pmb::for_each_pull(std::size_t point, std::span<const double> u, const Visi
     pull.energy = 0.5 * micromodulus_ * stretch * stretch * length;
     pull.per_length = micromodulus_ * stretch / r;
     visit(pull);
+  };
+  if (const LatticeBonds* on = body().on_lattice()) {
+    for (std::size_t k = 0; k < on->stencil.size(); ++k)
+      if (on->bonds.exists(k, point))
+        pull_of(BondPlanes::neighbour(on->stencil, k, point), on->stencil.bond[k]);
+    return;
+  }
+  const Point x = body().position(point);
+  body().for_each_neighbour(point, [&](std::size_t j) {
+    const Point y = body().position(j);
+    pull_of(j, {y[0] - x[0], y[1] - x[1], y[2] - x[2]});
   });
 }
 
@@ -243,19 +251,19 @@ void Pmb::plain_force(std::span<const double> u, std::span<double> force) const 
 }
 
 std::vector<ModelField> Pmb::fields(std::span<const double> u) {
-  ModelField energy{"strain_energy_density", 1, {}}, stress{"nominal_stress", 9, {}};
-  for (const std::size_t i : body().points) {
-    double w = 0;
-    Eigen::Matrix3d p = Eigen::Matrix3d::Zero();
-    for_each_pull(i, u, [&](const Pull& pull) {
+  const std::vector<std::size_t>& points = body().points;
+  ModelField energy{"strain_energy_density", 1, std::vector<double>(points.size())};
+  ModelField stress{"nominal_stress", 9, std::vector<double>(9 * points.size())};
+  parallel_for(static_cast<std::ptrdiff_t>(points.size()), [&](std::ptrdiff_t number) {
+    const auto n = static_cast<std::size_t>(number);
+    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> p(stress.values.data() + 9 * n);
+    p.setZero();
+    for_each_pull(points[n], u, [&](const Pull& pull) {
       const double half = 0.5 * full_volume(pull.neighbour);
-      w += half * pull.energy;
+      energy.values[n] += half * pull.energy;
       p += half * pull.per_length * pull.deformed * pull.reference.transpose();
     });
-    energy.values.push_back(w);
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) stress.values.push_back(p(a, b));
-  }
+  });
   return {damage(), std::move(energy), std::move(stress)};
 }
 

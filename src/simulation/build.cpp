@@ -222,6 +222,9 @@ void check_poissons_ratio(const MaterialInput& in, const Pmb& model) {
 }
 
 std::unique_ptr<PointModel> make_pmb(const Case& in, Body body) {
+  if (!in.inclusions.empty())
+    throw InputError(in.inclusions.front().at,
+                     "inclusion: the model \"pmb\" has no rigid inclusions; expected holes and cracks only");
   auto model = std::make_unique<Pmb>(std::move(body), pmb_settings(in));
   check_poissons_ratio(in.materials.front(), *model);
   return model;

@@ -28,7 +28,7 @@ struct Footprint {
 
 Footprint footprint(const std::string& model_kind) {
   if (model_kind == "membrane-bond") return {90, 5};
-  if (model_kind == "pmb") return {80, 20};
+  if (model_kind == "pmb") return {80, 13};
   return {220, 6};
 }
 

@@ -23,6 +23,9 @@ file = "points.csv"
 tolerance = "1 %"
 kind = "reference"
 """
+PMB = replaced(MOVING, 'law = "neo-hookean"', 'law = "linear-elastic"') + '\n[model]\nkind = "pmb"\n'
+STATIC_PMB = replaced(PLAIN, 'law = "neo-hookean"', 'law = "linear-elastic"') + '\n[model]\nkind = "pmb"\n'
+
 BOND = PLAIN + '\n[model]\nkind = "membrane-bond"\nloading = "planar"\nvariant = "published"\n'
 SET = """
 [set.{name}]
@@ -79,6 +82,20 @@ MISTAKES = [
      'expected "neo-hookean"'),
     ("a field of the other model", BOND + '\n[output]\nfields = ["damage"]\n', '["damage"]', '["weight_minimum"]', "[output]",
      'the model "membrane-bond" has no field "weight_minimum"'),
+    ("springs of rubber", MOVING + '\n[model]\nkind = "pmb"\n', 'kind = "pmb"', 'kind = "pmb"\nplane = "strain"', "[material.rubber]",
+     'the model "pmb" has no law "neo-hookean"; expected "linear-elastic"'),
+    ("linear rubber", PLAIN, 'law = "neo-hookean"', 'law = "linear-elastic"', "[material.rubber]",
+     'the model "membrane" has no law "linear-elastic"; expected neo-hookean'),
+    ("another Poisson's ratio", PMB, 'youngs_modulus = "6 MPa"', 'youngs_modulus = "6 MPa"\npoissons_ratio = 0.3', "[material.rubber]",
+     'the model "pmb" has 0.3333 here'),
+    ("springs that break in statics", STATIC_PMB, 'youngs_modulus = "6 MPa"', 'youngs_modulus = "6 MPa"\ncritical_stretch = 0.1',
+     "[material.rubber]", 'expected method = "verlet"'),
+    ("springs that break when pressed", PMB, 'youngs_modulus = "6 MPa"', 'youngs_modulus = "6 MPa"\ncritical_stretch = -0.1',
+     "critical_stretch", "expected a value above 0"),
+    ("springs with stabilisation", PMB, 'kind = "pmb"', 'kind = "pmb"\nstabilisation = 4', "stabilisation",
+     'it belongs to kind = "membrane"'),
+    ("an inclusion in springs", PMB + '\n[[inclusion]]\ndisc = { radius = "30 mm" }\n', '"30 mm"', '"31 mm"', "[[inclusion]]",
+     "has no rigid inclusions"),
     ("no density in motion", MOVING, 'density = "1100 kg/m^3"', "", "[material.rubber]", "density"),
     ("empty set", PLAIN + SET.format(name="far", where="x > 1 m"), "x > 1 m", "x > 2 m", "[set.far]", "the set is empty"),
     ("overlap", HOLE + '\n[[hole]]\ndisc = { radius = "5 mm", center = ["9 mm", 0] }\n', "9 mm", "10 mm",
