@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/instruction_set.hpp"
 #include "output/atomic_file.hpp"
 
 namespace riven {
@@ -182,6 +183,10 @@ void silence() {
 }
 
 }  // namespace
+
+std::string this_program() {
+  return fmt::format("{} ({})", RIVEN_VERSION, name(instruction_set()));
+}
 
 void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) try {
   silence();

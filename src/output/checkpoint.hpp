@@ -8,9 +8,12 @@
 
 namespace riven {
 
+/// Version and instruction set, "0.1.0 (avx2)": another one may give other last digits.
+std::string this_program();
+
 /// What a run that stopped goes on from.
 struct Checkpoint {
-  std::string version = RIVEN_VERSION;             // of the program that wrote it
+  std::string version = this_program();            // that wrote it
   std::map<std::string, std::string> case_values;  // what determines the run, by key
   Snapshot state;                                  // of model, solver and recorder
 };

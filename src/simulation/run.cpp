@@ -152,11 +152,11 @@ void tell_start(const Resumption& resumption, const Recorder& recorder, const Si
   if (!resumption.checkpoint) return log.info("there is no checkpoint: the run starts over");
   log.info(fmt::format("going on at {} {:.6g}, after {} steps and {:.1f} s", name(simulation.parameter),
                        recorder.last().parameter, recorder.last().steps, recorder.wall_s()));
-  if (resumption.checkpoint->version != RIVEN_VERSION)
+  if (resumption.checkpoint->version != this_program())
     log.warning(
         fmt::format("the checkpoint was written by Riven {}, this is Riven {}: the rest may differ in "
                     "the last digits from what an uninterrupted run would give",
-                    resumption.checkpoint->version, RIVEN_VERSION));
+                    resumption.checkpoint->version, this_program()));
 }
 
 /// Writes what remains to be written. Each part is worth trying: what fails here fails on a full disk,

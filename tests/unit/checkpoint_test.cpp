@@ -83,7 +83,7 @@ TEST(CheckpointFile, GivesBackWhatWasWritten) {
   write_checkpoint(scratch / "a.h5", written);
   EXPECT_EQ(scratch.entries(), 1) << "a temporary file was left";
   const Checkpoint read = read_checkpoint(scratch / "a.h5");
-  EXPECT_EQ(read.version, RIVEN_VERSION);
+  EXPECT_EQ(read.version, this_program());
   EXPECT_EQ(read.case_values, written.case_values);
   EXPECT_EQ(read.state, written.state);
   const auto& u = std::get<std::vector<double>>(read.state.arrays.at("state.u"));
