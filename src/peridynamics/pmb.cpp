@@ -154,6 +154,7 @@ void Pmb::look_at(std::span<const double> u, std::span<double> out) {
     lattice_.u[d] = u.data() + d * size;
     lattice_.out[d] = list_.out[d] = out.empty() ? nullptr : out.data() + d * size;
   }
+  if (list_.points.empty()) return;
   parallel_pieces(list_.points.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t d = 0; d < dimension; ++d) list_.points[i].u[d] = u[d * size + i];
