@@ -45,7 +45,7 @@ class Pmb final : public PointModel {
   [[nodiscard]] std::vector<std::string> describe() const override;
   [[nodiscard]] std::size_t bytes() const override;
 
-  /// c (N/m^6; N/m^4 per unit area of the cross-sections in lower dimensions is in the volumes).
+  /// c (N/m^6): force density is c s V of the other end.
   [[nodiscard]] double micromodulus() const { return micromodulus_; }
   [[nodiscard]] double poissons_ratio() const;
 
