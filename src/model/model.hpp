@@ -18,11 +18,13 @@ struct Breakdown {
   std::string what;
 };
 
-/// A result per point: `components` values each (9: a tensor row by row), point-major, SI units.
+/// A result per point: `components` values each (9: a tensor row by row), point-major, in an SI unit, empty
+/// if dimensionless.
 struct ModelField {
   std::string name;
   int components = 1;
   std::vector<double> values;
+  std::string unit;
 };
 
 /// Body and materials. A state is one vector of displacements u (m); its layout belongs to the model. Solvers

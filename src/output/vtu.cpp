@@ -17,6 +17,7 @@ namespace riven {
 namespace {
 
 constexpr std::uint8_t kVertexCell = 1;
+constexpr const char* kUnitKey = "UNITS_LABEL";
 constexpr std::size_t kMostPoints = std::size_t{1}
                                     << 40;  // far more than fits a machine; products do not overflow
 
@@ -42,10 +43,15 @@ std::string escape(const std::string& text) {
 
 template <typename T>
 void write_array(std::ostream& out, const char* type, const std::string& name, int components,
-                 std::span<const T> values) {
+                 std::span<const T> values, const std::string& unit = {}) {
   out << fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">\n",
                      type, escape(name), components)
-      << encode_vtk_array(std::as_bytes(values)) << "\n</DataArray>\n";
+      << encode_vtk_array(std::as_bytes(values)) << "\n";
+  // How VTK keeps the unit of an array. VTK's reader takes for values what comes first.
+  if (!unit.empty())
+    out << fmt::format("<InformationKey name=\"{}\" location=\"vtkDataArray\">{}</InformationKey>\n",
+                       kUnitKey, escape(unit));
+  out << "</DataArray>\n";
 }
 
 void write_cells(std::ostream& out, std::size_t points) {
@@ -87,6 +93,7 @@ PointField read_field(const pugi::xml_node& node, std::size_t points) {
   PointField field;
   field.name = node.attribute("Name").value();
   field.components = node.attribute("NumberOfComponents").as_int(1);
+  field.unit = node.find_child_by_attribute("InformationKey", "name", kUnitKey).text().get();
   if (field.components < 1)
     throw std::runtime_error(fmt::format("array \"{}\" has no components", field.name));
   const std::size_t count = points * static_cast<std::size_t>(field.components);
@@ -140,7 +147,7 @@ void write_vtu(const std::filesystem::path& path, const PointCloud& cloud) {
          "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n"
       << fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n", points, points);
   for (const PointField& field : cloud.fields) {
-    write_array<double>(out, "Float64", field.name, field.components, field.values);
+    write_array<double>(out, "Float64", field.name, field.components, field.values, field.unit);
   }
   out << "</PointData>\n<Points>\n";
   const double* first = points > 0 ? cloud.positions.front().data() : nullptr;

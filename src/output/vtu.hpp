@@ -7,11 +7,12 @@
 
 namespace riven {
 
-/// One field of a point cloud in SI units; `values` is point-major: values[point * components + component].
+/// One field of a point cloud; `values` is point-major: values[point * components + component].
 struct PointField {
   std::string name;
   int components = 1;  // 3: a vector, 9: a tensor (row by row), which is how ParaView knows them
   std::vector<double> values;
+  std::string unit = {};  // SI, empty if dimensionless
 };
 
 /// Points at their reference positions (m) with the fields there. Warp by the field `displacement` to see the

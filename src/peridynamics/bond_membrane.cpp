@@ -212,8 +212,8 @@ Eigen::Matrix2d BondMembrane::nominal_stress(std::size_t point, std::span<const 
 
 std::vector<ModelField> BondMembrane::fields(std::span<const double> u) {
   place_inclusions(u);
-  ModelField energy{"strain_energy_density", 1, {}}, stress{"nominal_stress", 9, {}},
-      factor{"surface_correction", 3, {}};
+  ModelField energy{"strain_energy_density", 1, {}, "J/m^3"}, stress{"nominal_stress", 9, {}, "Pa"},
+      factor{"surface_correction", 3, {}, {}};
   for (const std::size_t i : body().points) {
     energy.values.push_back(energy_density(i, u));
     const Eigen::Matrix2d p = nominal_stress(i, u);

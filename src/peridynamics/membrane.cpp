@@ -296,8 +296,8 @@ Eigen::Matrix2d Membrane::nominal_stress(std::size_t point, std::span<const doub
 
 std::vector<ModelField> Membrane::fields(std::span<const double> u) {
   update_points(u);
-  ModelField energy{"strain_energy_density", 1, {}}, stress{"nominal_stress", 9, {}},
-      weight{"weight_minimum", 1, {}};
+  ModelField energy{"strain_energy_density", 1, {}, "J/m^3"}, stress{"nominal_stress", 9, {}, "Pa"},
+      weight{"weight_minimum", 1, {}, {}};
   for (const std::size_t i : body().points) {
     energy.values.push_back(planes_.energy_density[i]);
     weight.values.push_back(smallest_weight_[i]);

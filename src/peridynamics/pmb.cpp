@@ -253,8 +253,8 @@ void Pmb::plain_force(std::span<const double> u, std::span<double> force) const 
 
 std::vector<ModelField> Pmb::fields(std::span<const double> u) {
   const std::vector<std::size_t>& points = body().points;
-  ModelField energy{"strain_energy_density", 1, std::vector<double>(points.size())};
-  ModelField stress{"nominal_stress", 9, std::vector<double>(9 * points.size())};
+  ModelField energy{"strain_energy_density", 1, std::vector<double>(points.size()), "J/m^3"};
+  ModelField stress{"nominal_stress", 9, std::vector<double>(9 * points.size()), "Pa"};
   parallel_for(static_cast<std::ptrdiff_t>(points.size()), [&](std::ptrdiff_t number) {
     const auto n = static_cast<std::size_t>(number);
     Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> p(stress.values.data() + 9 * n);

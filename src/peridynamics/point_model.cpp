@@ -39,7 +39,7 @@ PointModel::PointModel(Body body, double density) : body_(std::move(body)), dens
 }
 
 ModelField PointModel::damage() const {
-  ModelField damage{"damage", 1, {}};
+  ModelField damage{"damage", 1, {}, {}};
   for (const std::size_t i : body_.points) {
     const double whole = body_.whole_family[i];  // 0 for a point that holes have cut off from all others
     damage.values.push_back(whole > 0 ? 1 - static_cast<double>(body_.family_size(i)) / whole : 0);

@@ -154,13 +154,13 @@ void Recorder::write_fields() {
     return std::find(fields.begin(), fields.end(), field) != fields.end();
   };
   if (asked("displacement")) {
-    PointField field{"displacement", 3, {}};
+    PointField field{"displacement", 3, {}, "m"};
     for (const Point& u : simulation_.model->displacements(last_.u))
       field.values.insert(field.values.end(), u.begin(), u.end());
     cloud.fields.push_back(std::move(field));
   }
   for (ModelField& field : simulation_.model->fields(last_.u))
-    if (asked(field.name)) cloud.fields.push_back({field.name, field.components, std::move(field.values)});
+    if (asked(field.name)) cloud.fields.push_back({field.name, field.components, std::move(field.values), field.unit});
   const auto file = ResultFolder::field(static_cast<int>(states_.size()));
   write_vtu(folder_.path() / file, cloud);
   collection_.add(last_.parameter, file);

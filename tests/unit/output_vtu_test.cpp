@@ -29,7 +29,7 @@ PointCloud random_cloud(std::size_t points, unsigned seed) {
   cloud.positions.resize(points);
   for (auto& position : cloud.positions) position = {normal(random), normal(random), normal(random)};
   for (const auto& [name, components] : {std::pair("damage", 1), {"displacement", 3}, {"a<b & \"c\"", 9}}) {
-    PointField field{name, components, {}};
+    PointField field{name, components, {}, components == 1 ? "" : "J/m^3 & <m>"};
     field.values.resize(points * static_cast<std::size_t>(components));
     for (double& value : field.values) value = normal(random);
     cloud.fields.push_back(field);
@@ -49,6 +49,7 @@ void expect_same(const PointCloud& a, const PointCloud& b) {
   for (std::size_t i = 0; i < a.fields.size(); ++i) {
     EXPECT_EQ(a.fields[i].name, b.fields[i].name);
     EXPECT_EQ(a.fields[i].components, b.fields[i].components);
+    EXPECT_EQ(a.fields[i].unit, b.fields[i].unit);
     EXPECT_EQ(bits(a.fields[i].values), bits(b.fields[i].values));
   }
 }
