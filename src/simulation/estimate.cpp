@@ -153,7 +153,8 @@ void check_memory(const Case& input, double available) {
 
 double output_estimate(const Simulation& simulation) {
   constexpr double kAsText = 4.0 / 3;  // base64
-  constexpr double kCell = 20;         // characters of a number in the history
+  constexpr double kCell = 20;         // characters of a number in a history
+  constexpr double kEnergies = 6;      // columns of energy.csv
   constexpr double kPosition = 3, kDisplacement = 3;
   const auto& asked = simulation.input.output.fields;
   const auto is_asked = [&](const std::string& field) {
@@ -165,7 +166,8 @@ double output_estimate(const Simulation& simulation) {
     if (is_asked(field.name)) numbers += field.components;
   const auto points = static_cast<double>(simulation.model->positions().size());
   return output_states(simulation) * points * numbers * kNumber * kAsText +
-         history_rows(simulation) * kCell * static_cast<double>(1 + 2 * simulation.input.probes.size());
+         history_rows(simulation) * kCell *
+             (1 + 2 * static_cast<double>(simulation.input.probes.size()) + kEnergies);
 }
 
 void check_disk(const Simulation& simulation, double available) {
