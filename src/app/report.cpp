@@ -71,7 +71,7 @@ void check_replaceable(const fs::path& file, bool force) {
 }
 
 /// Writes the page of these results to `file`, and what it left out.
-void write_report(const std::vector<fs::path>& folders, const fs::path& file, bool force, std::FILE* tell) {
+void write_page_of(const std::vector<fs::path>& folders, const fs::path& file, bool force, std::FILE* tell) {
   check_replaceable(file, force);
   std::vector<ReportItem> items = read_items(folders);
   write_page(file, items);
@@ -88,12 +88,12 @@ int report(const ReportOptions& options) {
   if (file.empty())
     file = options.folders.size() == 1 ? ResultFolder::open(options.folders.front()).report()
                                        : fs::path("report.html");
-  write_report(options.folders, file, options.force, stdout);
+  write_page_of(options.folders, file, options.force, stdout);
   return kDone;
 }
 
 void write_report(const fs::path& folder) {
-  write_report({folder}, ResultFolder::open(folder).report(), false, stderr);
+  write_page_of({folder}, ResultFolder::open(folder).report(), false, stderr);
 }
 
 }  // namespace riven::app

@@ -11,7 +11,8 @@ namespace riven {
 
 namespace {
 
-constexpr std::size_t kEnoughStates = 40, kEnoughPoints = 100000;
+// What is left out in turn: states until so many remain, then points until so many remain.
+constexpr Extent kEnough[] = {{40, 100000}, {5, 1}};
 
 std::size_t whole(double number) {
   return number > 0 ? static_cast<std::size_t>(number) : 0;
@@ -53,21 +54,24 @@ Extent fitting(const ViewSize& size, double budget) {
   const Extent& all = size.all;
   if (size.bytes(all) <= budget) return all;
   const double room = budget - size.fixed;
+  const auto states_with = [&](std::size_t points) {
+    return std::min(all.states,
+                    whole((room / static_cast<double>(points) - size.per_point) / size.per_value));
+  };
   const auto points_with = [&](std::size_t states) {
     return std::min(all.points,
                     whole(room / (size.per_point + static_cast<double>(states) * size.per_value)));
   };
-  Extent fit = all;
-  fit.states =
-      std::min(all.states, whole((room / static_cast<double>(all.points) - size.per_point) / size.per_value));
-  if (size.mesh || fit.states >= kEnoughStates) return fit;
-  fit.states = std::min(all.states, kEnoughStates);
-  fit.points = points_with(fit.states);
-  const std::size_t enough = std::min(all.points, kEnoughPoints);
-  if (fit.points >= enough) return fit;
-  const double part = std::sqrt(std::max(0.0, room) / size.bytes({fit.states, enough}));
-  fit.states = std::max(std::min<std::size_t>(2, all.states), whole(part * static_cast<double>(fit.states)));
-  fit.points = points_with(fit.states);
+  Extent fit{states_with(all.points), all.points};
+  if (size.mesh) return fit;
+  for (const Extent& enough : kEnough) {
+    if (fit.states >= std::min(all.states, enough.states)) return fit;
+    fit.states = std::min(all.states, enough.states);
+    fit.points = points_with(fit.states);
+    if (fit.points >= std::min(all.points, enough.points)) return fit;
+    fit.points = std::min(all.points, enough.points);
+    fit.states = states_with(fit.points);
+  }
   return fit;
 }
 

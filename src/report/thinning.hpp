@@ -26,8 +26,8 @@ struct ViewSize {
   [[nodiscard]] double bytes(const Extent& of) const;
 };
 
-/// The most that fits: states are left out until 40 remain, then points until 100 000 remain, then both. A
-/// mesh keeps its points. No states or no points: nothing fits.
+/// What fits: states are left out until 40 remain, then points until 100 000 remain, then states until 10
+/// remain, then points. A mesh keeps its points. No states or no points: nothing fits.
 Extent fitting(const ViewSize& size, double budget);
 
 /// Parts of a budget: what needs less than an equal part gets what it needs, the others share the rest. If

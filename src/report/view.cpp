@@ -111,6 +111,14 @@ double bytes_of(const Json& json) {
   return static_cast<double>(json_text(json).size());
 }
 
+/// A few of the states that speak for all; not the first one, at rest, whose zeros take no room.
+std::vector<std::size_t> sample_states(std::size_t all) {
+  constexpr std::size_t kMost = 4;
+  std::vector<std::size_t> states = evenly_spaced(std::min(kMost, all), all);
+  if (states.size() == kMost) states.erase(states.begin());
+  return states;
+}
+
 /// What a page shows of a result.
 struct Choice {
   std::vector<std::size_t> states;
@@ -173,19 +181,20 @@ void tell(const Choice& choice, const Extent& all, std::vector<std::string>& not
 }  // namespace
 
 ViewSize measured(const Result& result) {
-  constexpr std::size_t kSampleStates = 3, kSamplePoints = 100000;
+  constexpr std::size_t kSamplePoints = 100000;
   ViewSize size{.all = {result.states.size(), 0}};
   States states(result);
-  for (const std::size_t state : evenly_spaced(std::min(kSampleStates, size.all.states), size.all.states)) {
+  const std::vector<std::size_t> sample = sample_states(size.all.states);
+  for (const std::size_t state : sample) {
     const PointCloud cloud = states.read(state);
     size.all.points = cloud.positions.size();
     size.mesh = !cloud.cells.empty();
-    std::vector<std::size_t> sample = all_of(std::min(kSamplePoints, size.all.points));
-    for (std::size_t& point : sample) point += (size.all.points - sample.size()) / 2;
-    const double points = std::max(1.0, static_cast<double>(sample.size()));
+    // Points apart from each other agree in fewer bytes, as those of a thinned cloud do.
+    const auto some = evenly_spaced(std::min(kSamplePoints, size.all.points), size.all.points);
+    const double points = std::max(1.0, static_cast<double>(some.size()));
     size.fixed = bytes_of(packed_cells(cloud)) + bytes_of(described_fields(cloud));
-    size.per_point = bytes_of(packed_positions(cloud, sample)) / points;
-    size.per_value = std::max(size.per_value, bytes_of(packed_fields(cloud, sample)) / points);
+    size.per_point = bytes_of(packed_positions(cloud, some)) / points;
+    size.per_value += bytes_of(packed_fields(cloud, some)) / points / static_cast<double>(sample.size());
   }
   return size;
 }
