@@ -16,6 +16,13 @@ struct Options {
   bool resume = false;
   std::string checkpoint_every;  // empty: as the case says
   int threads = 0;               // 0: all cores
+  bool report = false;
+};
+
+struct ReportOptions {
+  std::vector<std::filesystem::path> folders;
+  std::filesystem::path output;  // empty: report.html, in the folder where there is one
+  bool force = false;
 };
 
 struct CompareOptions {
@@ -48,6 +55,10 @@ int cases();
 int verify(const Options& options, bool brief);
 int compare(const CompareOptions& options);
 int schema(bool markdown);
+/// Writes the page of results.
+int report(const ReportOptions& options);
+/// The page of one result, into its folder.
+void write_report(const std::filesystem::path& folder);
 
 /// Folder of the shipped cases.
 std::filesystem::path cases_folder();

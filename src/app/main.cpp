@@ -80,6 +80,7 @@ class CommandLine {
     add("cases", "List the cases that ship with Riven", [] { return cases(); });
     add_verify();
     add_compare();
+    add_report();
     add_schema();
     add("version", "Print the version", [] {
       fmt::print("riven {}\n", RIVEN_VERSION);
@@ -148,6 +149,7 @@ class CommandLine {
         ->excludes(force);
     command.add_option("--checkpoint-every", options_.checkpoint_every,
                        "Time or steps between checkpoints: \"5 min\", \"1000 steps\" or \"never\"");
+    command.add_flag("--report", options_.report, "Write report.html into the result folder at the end");
   }
 
   void add_check() {
@@ -180,6 +182,15 @@ class CommandLine {
     command.add_flag("--json", to.json, "Print JSON");
   }
 
+  void add_report() {
+    CLI::App& command = add("report", "Show results in one HTML page: riven report DIR...",
+                            [this] { return report(report_); });
+    command.add_option("dir", report_.folders, "Result folders")->required();
+    command.add_option("-o,--output", report_.output,
+                       "File to write (default: report.html, in the folder if there is one)");
+    command.add_flag("--force", report_.force, "Replace a file that is no report");
+  }
+
   void add_schema() {
     CLI::App& command =
         add("schema", "Print the JSON Schema of the case format", [this] { return schema(markdown_); });
@@ -190,6 +201,7 @@ class CommandLine {
   std::string overview_;
   Options options_;
   NewOptions new_;
+  ReportOptions report_;
   CompareOptions comparison_;
   bool brief_ = false, markdown_ = false;
   std::string topic_;  // of help

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "app/commands.hpp"
-#include "app/starters.hpp"
+#include "base/embedded.hpp"
 #include "base/error.hpp"
 #include "base/nearest_name.hpp"
 #include "output/atomic_file.hpp"
@@ -14,6 +14,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// The files of `src/app/starters`. KIND.toml is the case that `riven new --kind KIND` writes; its first line
+/// is a comment that says what it is. KIND.NAME is a file that stands beside it, as NAME.
+std::vector<EmbeddedFile> starter_files() {
+  constexpr std::string_view kFolder = "src/app/starters/";
+  std::vector<EmbeddedFile> files;
+  for (const EmbeddedFile& file : embedded_files())
+    if (file.path.starts_with(kFolder)) files.push_back({file.path.substr(kFolder.size()), file.text});
+  return files;
+}
+
 struct Starter {
   std::string kind;
   std::string what;  // one line
@@ -21,10 +31,10 @@ struct Starter {
 
 std::vector<Starter> starters() {
   std::vector<Starter> all;
-  for (const StarterFile& file : starter_files())
-    if (file.name.ends_with(".toml")) {
+  for (const EmbeddedFile& file : starter_files())
+    if (file.path.ends_with(".toml")) {
       const std::string_view line = file.text.substr(0, file.text.find('\n'));
-      all.push_back({std::string(file.name.substr(0, file.name.size() - 5)), std::string(line.substr(2))});
+      all.push_back({std::string(file.path.substr(0, file.path.size() - 5)), std::string(line.substr(2))});
     }
   std::sort(all.begin(), all.end(), [](const Starter& a, const Starter& b) { return a.kind < b.kind; });
   return all;
@@ -63,11 +73,11 @@ struct Target {
 std::vector<Target> targets(const NewOptions& options) {
   const fs::path file = case_file(options);
   std::vector<Target> all;
-  for (const StarterFile& starter : starter_files()) {
-    if (starter.name == options.kind + ".toml") all.insert(all.begin(), {file, starter.text});
+  for (const EmbeddedFile& starter : starter_files()) {
+    if (starter.path == options.kind + ".toml") all.insert(all.begin(), {file, starter.text});
     const std::string beside = options.kind + ".";
-    if (starter.name.starts_with(beside) && starter.name != options.kind + ".toml")
-      all.push_back({file.parent_path() / starter.name.substr(beside.size()), starter.text});
+    if (starter.path.starts_with(beside) && starter.path != options.kind + ".toml")
+      all.push_back({file.parent_path() / starter.path.substr(beside.size()), starter.text});
   }
   return all;
 }

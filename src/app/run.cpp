@@ -2,6 +2,7 @@
 #include <omp.h>
 
 #include <cstdio>
+#include <filesystem>
 
 #include "app/commands.hpp"
 #include "input/case_reader.hpp"
@@ -9,6 +10,8 @@
 #include "simulation/run.hpp"
 
 namespace riven::app {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -30,7 +33,16 @@ std::string resume_command(const Options& options) {
   if (!options.checkpoint_every.empty())
     command += " --checkpoint-every " + shell_word(options.checkpoint_every);
   if (options.threads > 0) command += " --threads " + std::to_string(options.threads);
+  if (options.report) command += " --report";
   return command;
+}
+
+/// The page of what a run left, however it ended.
+int report_after(const fs::path& folder) {
+  return guarded([&] {
+    write_report(folder);
+    return kDone;
+  });
 }
 
 }  // namespace
@@ -43,14 +55,15 @@ int run(const Options& options) {
   Case input = read_case(file, set);
   const std::size_t unreached = options.set.empty() ? 0 : drop_unreached_expectations(input);
   if (unreached > 0) fmt::print(stderr, "{}\n", left_out(unreached));
-  const Summary summary =
-      run_case(input, {.folder = options.output.empty() ? default_output(file) : options.output,
-                       .force = options.force,
-                       .resume = options.resume,
-                       .resume_command = resume_command(options),
-                       .case_name = case_name(file)});
+  const fs::path folder = options.output.empty() ? default_output(file) : options.output;
+  const Summary summary = run_case(input, {.folder = folder,
+                                           .force = options.force,
+                                           .resume = options.resume,
+                                           .resume_command = resume_command(options),
+                                           .case_name = case_name(file)});
+  const int reported = options.report ? report_after(folder) : kDone;
   if (summary.status == RunStatus::interrupted) return kInterrupted;
-  return summary.status == RunStatus::finished ? kDone : kFailed;
+  return summary.status == RunStatus::finished ? reported : kFailed;
 }
 
 }  // namespace riven::app

@@ -16,7 +16,7 @@
 namespace riven {
 namespace {
 
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;
 constexpr std::size_t kHeader = 512;  // bytes; what HDF5 calls the user block
 constexpr const char* kMagic = "Riven checkpoint\n";
 constexpr const char* kUnknownSum = "00000000";

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/nearest_name.hpp"
 #include "output/atomic_file.hpp"
 
 namespace riven {
@@ -100,6 +101,16 @@ void move_folder(const fs::path& from, const fs::path& to) {
     throw RunError(fmt::format("cannot create the result folder {}: {}", to.string(), problem.message()));
 }
 
+/// The result beside `path` that a typist most likely meant.
+std::string result_near(const fs::path& path) {
+  const fs::path parent = fs::absolute(path / "").parent_path().parent_path();
+  std::vector<std::string> names;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(parent, none))
+    if (is_result(entry.path())) names.push_back(entry.path().filename().string());
+  return did_you_mean((path / "").parent_path().filename().string(), names);
+}
+
 }  // namespace
 
 ResultFolder ResultFolder::create(const fs::path& path, bool force) {
@@ -123,10 +134,11 @@ ResultFolder ResultFolder::create(const fs::path& path, bool force) {
 
 ResultFolder ResultFolder::open(const fs::path& path) {
   if (!fs::is_directory(path))
-    throw InputError(fmt::format("{}: expected a result folder, there is none", path.string()));
-  if (!is_result(path)) {
     throw InputError(
-        fmt::format("{}: is not a result of Riven: it has no case.toml and resolved.toml", path.string()));
+        fmt::format("{}: expected a result folder, there is none{}", path.string(), result_near(path)));
+  if (!is_result(path)) {
+    throw InputError(fmt::format("{}: is not a result of Riven: it has no case.toml and resolved.toml{}",
+                                 path.string(), result_near(path)));
   }
   ResultFolder folder;
   folder.target_ = folder.current_ = path;

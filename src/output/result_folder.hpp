@@ -15,7 +15,7 @@ class ResultFolder {
   /// an empty one) or to which a run writes, or when it cannot be created.
   static ResultFolder create(const std::filesystem::path& path, bool force);
 
-  /// An existing result. Throws InputError when there is none at `path`.
+  /// An existing result. Throws InputError when there is none at `path`, with the name of one near.
   static ResultFolder open(const std::filesystem::path& path);
 
   /// The same, to write to it. Throws InputError when another run does.
@@ -41,8 +41,10 @@ class ResultFolder {
   [[nodiscard]] std::filesystem::path log() const { return current_ / "riven.log"; }
   [[nodiscard]] std::filesystem::path summary() const { return current_ / "summary.json"; }
   [[nodiscard]] std::filesystem::path history() const { return current_ / "history.csv"; }
+  [[nodiscard]] std::filesystem::path energy() const { return current_ / "energy.csv"; }
   [[nodiscard]] std::filesystem::path collection() const { return current_ / "fields.pvd"; }
   [[nodiscard]] std::filesystem::path checkpoint() const { return current_ / "checkpoint.h5"; }
+  [[nodiscard]] std::filesystem::path report() const { return current_ / "report.html"; }
   /// Removes what a killed run left half written, and the field files from output state `states` on.
   void cut_off(int states) const;
   /// Field file of an output state, counted from 0, relative to the folder: "fields/0000.vtu".

@@ -95,6 +95,7 @@ Summary summary_from(const Json& object) {
   summary.status = status_from(object.at("status").get<std::string>());
   summary.case_name = object.at("case").get<std::string>();
   summary.version = object.at("version").get<std::string>();
+  summary.instruction_set = object.value("instruction_set", std::string());
   summary.metrics = metrics_from(object.at("metrics"));
   read_states(object.at("states"), summary);
   summary.energy = energy_from(object.at("energy"));
@@ -110,6 +111,7 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
   object["status"] = name(summary.status);
   object["case"] = summary.case_name;
   object["version"] = summary.version;
+  object["instruction_set"] = summary.instruction_set;
   object["metrics"] = to_json(summary.metrics);
   object["states"] = Json::array();
   for (const SummaryState& state : summary.states) {

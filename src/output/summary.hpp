@@ -64,6 +64,7 @@ struct Summary {
   RunStatus status = RunStatus::finished;
   std::string case_name;
   std::string version = RIVEN_VERSION;
+  std::string instruction_set = {};          // of the kernels; empty in results of Riven before it was kept
   Parameter parameter = Parameter::stretch;  // of the states
   Metrics metrics;                           // at the final state
   std::vector<SummaryState> states;

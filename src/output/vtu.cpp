@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <numeric>
@@ -18,8 +19,8 @@ namespace {
 
 constexpr std::uint8_t kVertexCell = 1;
 constexpr const char* kUnitKey = "UNITS_LABEL";
-constexpr std::size_t kMostPoints = std::size_t{1}
-                                    << 40;  // far more than fits a machine; products do not overflow
+// Points or cells: far more than fits a machine; products do not overflow.
+constexpr std::size_t kMost = std::size_t{1} << 40;
 
 std::string escape(const std::string& text) {
   std::string escaped;
@@ -54,15 +55,42 @@ void write_array(std::ostream& out, const char* type, const std::string& name, i
   out << "</DataArray>\n";
 }
 
-void write_cells(std::ostream& out, std::size_t points) {
-  std::vector<std::int64_t> numbers(points);
+/// Cells as VTK has them.
+struct CellArrays {
+  std::vector<std::int64_t> connectivity;  // of all cells, one after the other
+  std::vector<std::int64_t> offsets;       // of each, where its part of the connectivity ends
+  std::vector<std::uint8_t> types;
+};
+
+/// VTK_LINE, VTK_TRIANGLE, VTK_QUAD
+constexpr std::uint8_t vtk_type(CellKind kind) {
+  constexpr std::uint8_t kTypes[] = {3, 5, 9};
+  return kTypes[static_cast<std::size_t>(kind)];
+}
+
+CellArrays cell_arrays(const PointCloud& cloud) {
+  CellArrays arrays;
+  for (const Cells& cells : cloud.cells) {
+    arrays.connectivity.insert(arrays.connectivity.end(), cells.nodes.begin(), cells.nodes.end());
+    arrays.types.resize(arrays.types.size() + cells.nodes.size() / corners(cells.kind), vtk_type(cells.kind));
+    while (arrays.offsets.size() < arrays.types.size())
+      arrays.offsets.push_back((arrays.offsets.empty() ? 0 : arrays.offsets.back()) +
+                               static_cast<std::int64_t>(corners(cells.kind)));
+  }
+  if (!cloud.cells.empty()) return arrays;
+  arrays.connectivity.resize(cloud.positions.size());
+  std::iota(arrays.connectivity.begin(), arrays.connectivity.end(), std::int64_t{0});
+  arrays.offsets.resize(cloud.positions.size());
+  std::iota(arrays.offsets.begin(), arrays.offsets.end(), std::int64_t{1});
+  arrays.types.assign(cloud.positions.size(), kVertexCell);
+  return arrays;
+}
+
+void write_cells(std::ostream& out, const CellArrays& arrays) {
   out << "<Cells>\n";
-  std::iota(numbers.begin(), numbers.end(), std::int64_t{0});
-  write_array<std::int64_t>(out, "Int64", "connectivity", 1, numbers);
-  std::iota(numbers.begin(), numbers.end(), std::int64_t{1});
-  write_array<std::int64_t>(out, "Int64", "offsets", 1, numbers);
-  const std::vector<std::uint8_t> types(points, kVertexCell);
-  write_array<std::uint8_t>(out, "UInt8", "types", 1, types);
+  write_array<std::int64_t>(out, "Int64", "connectivity", 1, arrays.connectivity);
+  write_array<std::int64_t>(out, "Int64", "offsets", 1, arrays.offsets);
+  write_array<std::uint8_t>(out, "UInt8", "types", 1, arrays.types);
   out << "</Cells>\n";
 }
 
@@ -74,6 +102,14 @@ void check(const PointCloud& cloud) {
                                               field.name, field.values.size(), cloud.positions.size(),
                                               field.components));
     }
+  }
+  for (const Cells& cells : cloud.cells) {
+    const bool whole = cells.nodes.size() % corners(cells.kind) == 0;
+    const bool inside = std::all_of(cells.nodes.begin(), cells.nodes.end(),
+                                    [&](std::uint32_t node) { return node < cloud.positions.size(); });
+    if (!whole || !inside)
+      throw std::invalid_argument(
+          fmt::format("cells of kind {} do not fit the {} points", name(cells.kind), cloud.positions.size()));
   }
 }
 
@@ -89,6 +125,25 @@ void expect_attribute(const pugi::xml_node& node, const char* name, const std::s
     throw std::runtime_error(fmt::format("its {} is \"{}\", expected \"{}\"", name, found, expected));
 }
 
+/// The numbers of an array, which has `count` of them.
+template <typename T>
+std::vector<T> read_array(const pugi::xml_node& node, const char* type, std::size_t count) {
+  try {
+    expect_attribute(node, "type", type);
+    expect_attribute(node, "format", "binary");
+    std::string_view text = node.text().get();
+    const auto first = text.find_first_not_of(" \t\r\n");
+    if (first == std::string::npos) throw std::runtime_error("it is empty");
+    text = text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+    const auto bytes = decode_vtk_array(text, count * sizeof(T));
+    std::vector<T> values(count);
+    if (!bytes.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
+    return values;
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("array \"{}\": {}", node.attribute("Name").value(), error.what()));
+  }
+}
+
 PointField read_field(const pugi::xml_node& node, std::size_t points) {
   PointField field;
   field.name = node.attribute("Name").value();
@@ -96,21 +151,41 @@ PointField read_field(const pugi::xml_node& node, std::size_t points) {
   field.unit = node.find_child_by_attribute("InformationKey", "name", kUnitKey).text().get();
   if (field.components < 1)
     throw std::runtime_error(fmt::format("array \"{}\" has no components", field.name));
-  const std::size_t count = points * static_cast<std::size_t>(field.components);
-  try {
-    expect_attribute(node, "type", "Float64");
-    expect_attribute(node, "format", "binary");
-    std::string_view text = node.text().get();
-    const auto first = text.find_first_not_of(" \t\r\n");
-    if (first == std::string::npos) throw std::runtime_error("it is empty");
-    text = text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-    const auto bytes = decode_vtk_array(text, count * sizeof(double));
-    field.values.resize(count);
-    if (!bytes.empty()) std::memcpy(field.values.data(), bytes.data(), bytes.size());
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("array \"{}\": {}", field.name, error.what()));
-  }
+  field.values = read_array<double>(node, "Float64", points * static_cast<std::size_t>(field.components));
   return field;
+}
+
+CellKind kind_of(std::uint8_t type) {
+  for (const CellKind kind : {CellKind::line, CellKind::triangle, CellKind::quad})
+    if (vtk_type(kind) == type) return kind;
+  throw std::runtime_error(fmt::format(
+      "it has cells of VTK's type {}; expected bare vertices (1), or lines (3), triangles (5) and quads (9)",
+      type));
+}
+
+std::vector<Cells> read_cells(const pugi::xml_node& node, std::size_t count, std::size_t points) {
+  const auto array = [&](const char* named) {
+    return node.find_child_by_attribute("DataArray", "Name", named);
+  };
+  const auto types = read_array<std::uint8_t>(array("types"), "UInt8", count);
+  const auto is_vertex = [](std::uint8_t type) { return type == kVertexCell; };
+  if (std::all_of(types.begin(), types.end(), is_vertex)) return {};
+
+  std::vector<Cells> all;
+  std::size_t connections = 0;
+  for (const std::uint8_t type : types) connections += corners(kind_of(type));
+  const auto nodes = read_array<std::int64_t>(array("connectivity"), "Int64", connections);
+  auto node_of = nodes.begin();
+  for (const std::uint8_t type : types) {
+    const CellKind kind = kind_of(type);
+    if (all.empty() || all.back().kind != kind) all.push_back({kind, {}});
+    for (std::size_t corner = 0; corner < corners(kind); ++corner, ++node_of) {
+      if (*node_of < 0 || static_cast<std::size_t>(*node_of) >= points)
+        throw std::runtime_error(fmt::format("a cell has point {} of {}", *node_of, points));
+      all.back().nodes.push_back(static_cast<std::uint32_t>(*node_of));
+    }
+  }
+  return all;
 }
 
 PointCloud read_grid(const pugi::xml_node& file) {
@@ -119,8 +194,12 @@ PointCloud read_grid(const pugi::xml_node& file) {
   expect_attribute(file, "header_type", "UInt64");
   expect_attribute(file, "compressor", "vtkZLibDataCompressor");
   const auto piece = child(child(file, "UnstructuredGrid"), "Piece");
-  const auto points = static_cast<std::size_t>(piece.attribute("NumberOfPoints").as_ullong());
-  if (points > kMostPoints) throw std::runtime_error("its number of points is damaged");
+  const auto number = [&](const char* of) {
+    const auto found = static_cast<std::size_t>(piece.attribute(of).as_ullong());
+    if (found > kMost) throw std::runtime_error(fmt::format("its {} is damaged", of));
+    return found;
+  };
+  const std::size_t points = number("NumberOfPoints");
 
   const PointField positions = read_field(child(child(piece, "Points"), "DataArray"), points);
   if (positions.components != 3) throw std::runtime_error("its points do not have 3 components");
@@ -131,6 +210,7 @@ PointCloud read_grid(const pugi::xml_node& file) {
   }
   for (const auto& node : child(piece, "PointData").children("DataArray"))
     cloud.fields.push_back(read_field(node, points));
+  cloud.cells = read_cells(child(piece, "Cells"), number("NumberOfCells"), points);
   return cloud;
 }
 
@@ -141,11 +221,13 @@ void write_vtu(const std::filesystem::path& path, const PointCloud& cloud) {
   AtomicFile file(path);
   auto& out = file.stream();
   const std::size_t points = cloud.positions.size();
+  const CellArrays cells = cell_arrays(cloud);
   out << "<?xml version=\"1.0\"?>\n"
          "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
          "header_type=\"UInt64\" "
          "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n"
-      << fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n", points, points);
+      << fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n", points,
+                     cells.types.size());
   for (const PointField& field : cloud.fields) {
     write_array<double>(out, "Float64", field.name, field.components, field.values, field.unit);
   }
@@ -153,7 +235,7 @@ void write_vtu(const std::filesystem::path& path, const PointCloud& cloud) {
   const double* first = points > 0 ? cloud.positions.front().data() : nullptr;
   write_array<double>(out, "Float64", "Points", 3, {first, 3 * points});
   out << "</Points>\n";
-  write_cells(out, points);
+  write_cells(out, cells);
   out << "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
   file.commit();
 }

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace riven {
@@ -15,21 +17,41 @@ struct PointField {
   std::string unit = {};  // SI, empty if dimensionless
 };
 
+/// What a cell of a mesh is; a bare point is none.
+enum class CellKind { line, triangle, quad };
+
+/// "line", "triangle" or "quad".
+constexpr std::string_view name(CellKind kind) {
+  constexpr std::string_view kNames[] = {"line", "triangle", "quad"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+constexpr std::size_t corners(CellKind kind) {
+  return 2 + static_cast<std::size_t>(kind);
+}
+
+/// Cells of one kind: the numbers of the points at their corners, cell by cell.
+struct Cells {
+  CellKind kind = CellKind::line;
+  std::vector<std::uint32_t> nodes;
+};
+
 /// Points at their reference positions (m) with the fields there. Warp by the field `displacement` to see the
 /// deformed body.
 struct PointCloud {
   std::vector<std::array<double, 3>> positions;
   std::vector<PointField> fields;
+  std::vector<Cells> cells = {};  // of a mesh; empty: bare points
 };
 
-/// Writes the cloud as one VTK XML unstructured grid of vertex cells: compressed, 64-bit values. The file
-/// appears under its name only when it is complete.
-/// Throws std::invalid_argument when a field's size does not fit the number of points, RunError when the file
-/// cannot be written.
+/// Writes the cloud as one VTK XML unstructured grid, of vertex cells where it has none of its own:
+/// compressed, 64-bit values. The file appears under its name only when it is complete.
+/// Throws std::invalid_argument when the size of a field or the corners of cells do not fit the points,
+/// RunError when the file cannot be written.
 void write_vtu(const std::filesystem::path& path, const PointCloud& cloud);
 
-/// Reads a file that `write_vtu` wrote; values come back bit by bit.
-/// Throws InputError when the file is missing, damaged or not of this kind.
+/// Reads a file that `write_vtu` wrote; values come back bit by bit, neighbouring cells of one kind as one
+/// list. Throws InputError when the file is missing, damaged or not of this kind.
 PointCloud read_vtu(const std::filesystem::path& path);
 
 }  // namespace riven

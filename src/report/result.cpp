@@ -53,9 +53,12 @@ Result Result::open(const fs::path& folder) {
   const ResultFolder files = ResultFolder::open(folder);
   Result result;
   result.folder = folder;
-  result.title = read_case(files.resolved()).title;
+  const Case input = read_case(files.resolved());
+  result.title = input.title;
+  result.spacing = input.geometry.spacing;
   if (fs::exists(files.summary())) result.summary = read_summary(files.summary());
   if (fs::exists(files.history())) result.history = History::read(files.history());
+  if (fs::exists(files.energy())) result.energy = History::read(files.energy());
   if (fs::exists(files.collection())) result.states = read_collection(files.collection());
   return result;
 }

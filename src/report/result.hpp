@@ -17,7 +17,8 @@ struct Result {
   std::filesystem::path folder;
   std::string title;               // of the case, else the folder's name
   std::optional<Summary> summary;  // none while the run goes on, or when it was killed
-  std::optional<History> history;
+  std::optional<History> history, energy;
+  double spacing = 0;                   // mean distance of points (m), by the case
   std::vector<CollectionEntry> states;  // field files, in order
 
   /// Throws InputError when the folder is no result of Riven.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/text.hpp"
 #include "solver/velocity_verlet.hpp"
 
 namespace riven {
@@ -152,7 +153,8 @@ void check_memory(const Case& input, double available) {
 
 double output_estimate(const Simulation& simulation) {
   constexpr double kAsText = 4.0 / 3;  // base64
-  constexpr double kCell = 20;         // characters of a number in the history
+  constexpr double kCell = 20;         // characters of a number in a history
+  constexpr double kEnergies = 6;      // columns of energy.csv
   constexpr double kPosition = 3, kDisplacement = 3;
   const auto& asked = simulation.input.output.fields;
   const auto is_asked = [&](const std::string& field) {
@@ -164,7 +166,8 @@ double output_estimate(const Simulation& simulation) {
     if (is_asked(field.name)) numbers += field.components;
   const auto points = static_cast<double>(simulation.model->positions().size());
   return output_states(simulation) * points * numbers * kNumber * kAsText +
-         history_rows(simulation) * kCell * static_cast<double>(1 + 2 * simulation.input.probes.size());
+         history_rows(simulation) * kCell *
+             (1 + 2 * static_cast<double>(simulation.input.probes.size()) + kEnergies);
 }
 
 void check_disk(const Simulation& simulation, double available) {
@@ -198,25 +201,6 @@ TimeEstimate time_estimate(const Simulation& simulation) {
     estimate.evaluations = kPerPointAlongSide * side / simulation.body->spacing * load_steps(solver);
   }
   return estimate;
-}
-
-std::string bytes_text(double bytes) {
-  if (bytes < 1e9) return fmt::format("{:.0f} MB", std::ceil(1e-6 * bytes));
-  return fmt::format("{:.3g} GB", 1e-9 * bytes);
-}
-
-std::string duration_text(double seconds) {
-  constexpr double kMinute = 60, kHour = 3600, kDay = 86400, kYear = 365 * kDay;
-  if (seconds < 10) return fmt::format("{:.1f} s", seconds);
-  if (seconds < 90) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 90 * kMinute) return fmt::format("{:.0f} min", seconds / kMinute);
-  if (seconds < 2 * kDay) return fmt::format("{:.1f} h", seconds / kHour);
-  if (seconds < 2 * kYear) return fmt::format("{:.0f} days", seconds / kDay);
-  return fmt::format("{:.2g} years", seconds / kYear);
-}
-
-std::string count_text(double count, const std::string& noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
 }  // namespace riven

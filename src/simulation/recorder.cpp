@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "output/atomic_file.hpp"
 #include "output/vtu.hpp"
@@ -14,14 +15,20 @@ namespace riven {
 namespace {
 
 constexpr const char* kHistoryBytes = "recorder.history_bytes";
+constexpr const char* kEnergyBytes = "recorder.energy_bytes";
 
-HistoryWriter open_history(const ResultFolder& folder, Parameter parameter, const Probes& probes,
-                           const Checkpoint* from) {
-  if (from == nullptr) return {folder.history(), parameter, probes.columns()};
+/// A history that begins, or one that goes on behind the length that the checkpoint knows under `key`.
+HistoryWriter open_history(const std::filesystem::path& path, Parameter parameter,
+                           const std::vector<HistoryColumn>& columns, const Checkpoint* from,
+                           const char* key) {
+  if (from == nullptr) return {path, parameter, columns};
   std::uintmax_t bytes = 0;
-  from->state.restoring()(kHistoryBytes, bytes);
-  return {folder.history(), probes.columns().size(), bytes};
+  from->state.restoring()(key, bytes);
+  return {path, columns.size(), bytes};
 }
+
+const std::vector<HistoryColumn> kEnergyColumns = {
+    {"kinetic", "J"}, {"strain", "J"}, {"dissipated", "J"}, {"external_work", "J"}, {"balance_error", ""}};
 
 double seconds_since(Recorder::Clock::time_point start) {
   return std::chrono::duration<double>(Recorder::Clock::now() - start).count();
@@ -36,7 +43,8 @@ Recorder::Recorder(const Simulation& simulation, const Probes& probes, const Res
       folder_(folder),
       screen_(screen),
       log_(log),
-      history_(open_history(folder, simulation.parameter, probes, from)),
+      history_(open_history(folder.history(), simulation.parameter, probes.columns(), from, kHistoryBytes)),
+      energy_(open_history(folder.energy(), simulation.parameter, kEnergyColumns, from, kEnergyBytes)),
       collection_(folder.collection()),
       start_(start),
       last_checkpoint_(Clock::now()),
@@ -94,6 +102,7 @@ void Recorder::write_checkpoint(Snapshot state) {
   const auto each = state.saving();
   each_member(*this, each);
   each(kHistoryBytes, history_.bytes());
+  each(kEnergyBytes, energy_.bytes());
   each("recorder.wall_s", wall_s());
   riven::write_checkpoint(folder_.checkpoint(), {.case_values = case_values_, .state = std::move(state)});
   log_.detail(fmt::format("checkpoint at {} {:.6g}", name(simulation_.parameter), last_.parameter));
@@ -102,6 +111,7 @@ void Recorder::write_checkpoint(Snapshot state) {
 /// A checkpoint counts on the files that were written before it.
 void Recorder::bring_results_to_disk() {
   sync_to_disk(folder_.history());
+  sync_to_disk(folder_.energy());
   if (states_on_disk_ == states_.size()) return;
   for (; states_on_disk_ < states_.size(); ++states_on_disk_)
     sync_to_disk(folder_.path() / ResultFolder::field(static_cast<int>(states_on_disk_)));
@@ -120,7 +130,7 @@ void Recorder::progressed(const SolverProgress& progress) {
   state.value = progress.parameter;
   state.fraction = (progress.reached - progress.begin) / (progress.end - progress.begin);
   state.iterations = simulation_.parameter == Parameter::time ? progress.step : progress.iteration;
-  state.balance_error = last_.energy.error();
+  state.balance_error = energy().balance_error;
   if (simulation_.parameter != Parameter::time) {
     state.load_step = static_cast<int>(progress.step);
     state.load_steps = static_cast<int>(progress.steps);
@@ -136,9 +146,12 @@ void Recorder::reached(const State& state, const Constraints& constraints, bool 
   last_written_ = false;
   last_values_ = probes_.evaluate(state, constraints);
   history_.add(state.parameter, last_values_);
+  const EnergySummary now = energy();
+  energy_.add(state.parameter,
+              std::array{now.kinetic, now.strain, now.dissipated, now.external_work, now.balance_error});
   log_.detail(fmt::format("{} {:.6g}: {} force evaluations, strain energy {:.8g} J, energy balance {:.2e}",
-                          name(simulation_.parameter), state.parameter, state.evaluations,
-                          state.energy.strain, state.energy.error()));
+                          name(simulation_.parameter), state.parameter, state.evaluations, now.strain,
+                          now.balance_error));
   if (output) write_fields();
 }
 
@@ -160,7 +173,8 @@ void Recorder::write_fields() {
     cloud.fields.push_back(std::move(field));
   }
   for (ModelField& field : simulation_.model->fields(last_.u))
-    if (asked(field.name)) cloud.fields.push_back({field.name, field.components, std::move(field.values), field.unit});
+    if (asked(field.name))
+      cloud.fields.push_back({field.name, field.components, std::move(field.values), field.unit});
   const auto file = ResultFolder::field(static_cast<int>(states_.size()));
   write_vtu(folder_.path() / file, cloud);
   collection_.add(last_.parameter, file);
@@ -178,14 +192,20 @@ void Recorder::keep_last() {
   if (!last_written_) write_fields();
 }
 
+EnergySummary Recorder::energy() const {
+  const EnergyBalance& is = last_.energy;
+  const double error =
+      simulation_.model->conservative() ? is.error() : std::numeric_limits<double>::quiet_NaN();
+  return {is.kinetic, is.strain, is.dissipated, is.external_work, error};
+}
+
 Summary Recorder::summary() const {
   Summary summary;
   summary.parameter = simulation_.parameter;
   if (!last_values_.empty()) summary.metrics = probes_.metrics(last_values_);
   summary.timing.wall_s = wall_s();
   summary.states = states_;
-  const EnergyBalance& energy = last_.energy;
-  summary.energy = {energy.kinetic, energy.strain, energy.dissipated, energy.external_work, energy.error()};
+  summary.energy = energy();
   summary.timing.steps = last_.steps;
   summary.timing.points = static_cast<std::int64_t>(simulation_.model->points());
   summary.timing.bonds = static_cast<std::int64_t>(simulation_.model->bonds());

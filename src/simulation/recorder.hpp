@@ -52,13 +52,15 @@ class Recorder final : public Observer {
   void bring_results_to_disk();
   void add_state(double parameter, const std::vector<double>& values);
   void write_fields();
+  /// At the last state; a model whose force is not the gradient of its energy has no balance.
+  [[nodiscard]] EnergySummary energy() const;
 
   const Simulation& simulation_;
   const Probes& probes_;
   const ResultFolder& folder_;
   Progress& screen_;
   Log& log_;
-  HistoryWriter history_;
+  HistoryWriter history_, energy_;
   Collection collection_;
   State last_;
   std::vector<double> last_values_;  // of the probes

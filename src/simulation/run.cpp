@@ -8,7 +8,9 @@
 #include <new>
 #include <sstream>
 
+#include "base/instruction_set.hpp"
 #include "base/machine.hpp"
+#include "base/text.hpp"
 #include "input/case_writer.hpp"
 #include "simulation/estimate.hpp"
 #include "simulation/interrupt.hpp"
@@ -112,6 +114,7 @@ Summary summary_of(const Recorder& recorder, const Simulation& simulation, RunSt
   Summary summary = recorder.summary();
   summary.status = status;
   summary.case_name = options.case_name;
+  summary.instruction_set = name(instruction_set());
   if (simulation.parameter == Parameter::stretch) summary.timing.iterations = recorder.evaluations();
   summary.timing.bond_evaluations_per_second = static_cast<double>(recorder.evaluations()) *
                                                static_cast<double>(summary.timing.bonds) /
@@ -190,7 +193,7 @@ void tell_end(const Summary& summary, const Recorder& recorder, const Simulation
                        name(summary.status), summary.timing.wall_s, recorder.evaluations(),
                        1e-6 * summary.timing.bond_evaluations_per_second, balance));
   if (summary.status == RunStatus::finished)
-    log.info(fmt::format("results: {}/ (fields.pvd opens in ParaView; history.csv, summary.json)",
+    log.info(fmt::format("results: {}/ (fields.pvd opens in ParaView; history.csv, energy.csv, summary.json)",
                          options.folder.string()));
 }
 

@@ -196,15 +196,17 @@ class Wishes(ResumeTest):
         at = len(good) // 2
         for damaged, said in {good[:at]: "damaged", good[:at] + bytes([good[at] ^ 1]) + good[at + 1:]: "damaged",
                               b"something else": "is no checkpoint of Riven",
-                              good.replace(b"format 1", b"format 9", 1): 'has format "9"'}.items():
+                              good.replace(b"format 2", b"format 9", 1): 'has format "9"'}.items():
             path.write_bytes(damaged)
             before = self.contents()
             self.assertIn(said, self.refused("run", case, "-o", "out", "--resume"))
             self.assertEqual(self.contents(), before)
         path.write_bytes(good)
-        rows = (self.top / "out/history.csv").read_bytes()
-        (self.top / "out/history.csv").write_bytes(rows[:20])
-        self.assertIn("history.csv", self.refused("run", case, "-o", "out", "--resume"))
+        for name in ("history.csv", "energy.csv"):
+            rows = (self.top / "out" / name).read_bytes()
+            (self.top / "out" / name).write_bytes(rows[:20])
+            self.assertIn(name, self.refused("run", case, "-o", "out", "--resume"))
+            (self.top / "out" / name).write_bytes(rows)
 
     def test_nothing_to_resume(self):
         case = self.write("case.toml", RELAXED)

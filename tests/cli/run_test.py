@@ -6,7 +6,7 @@ import unittest
 
 from program import HOLE, MOVING, PLAIN, ProgramTest, fields, history, plain_force, replaced, series
 
-FILES = ["case.toml", "fields", "fields.pvd", "fields/0000.vtu", "fields/0001.vtu", "history.csv", "resolved.toml",
+FILES = ["case.toml", "energy.csv", "fields", "fields.pvd", "fields/0000.vtu", "fields/0001.vtu", "history.csv", "resolved.toml",
          "riven.log", "summary.json"]
 
 
@@ -30,7 +30,7 @@ class Results(ProgramTest):
     def test_summary(self):
         self.command("run", self.write("sheet.toml", PLAIN), "-o", "out")
         summary = self.summary("out")
-        self.assertEqual(set(summary), {"status", "case", "version", "metrics", "states", "energy", "timing",
+        self.assertEqual(set(summary), {"status", "case", "version", "instruction_set", "metrics", "states", "energy", "timing",
                                         "memory_peak_bytes"})
         self.assertEqual((summary["status"], summary["case"]), ("finished", "sheet"))
         self.assertEqual([state["stretch"] for state in summary["states"]], [1.2, 1.4])

@@ -53,6 +53,7 @@ class Wrapper(unittest.TestCase):
         self.toy = self.top / "toy"
         (self.toy / "src").mkdir(parents=True)
         (self.toy / "cmake").mkdir()
+        (self.toy / "web/dist").mkdir(parents=True)
         shutil.copy(ROOT / "riven", self.toy)
         shutil.copy(ROOT / "CMakePresets.json", self.toy)
         (self.toy / "packages.txt").write_text("# comment\nbuild: dpkg\n")

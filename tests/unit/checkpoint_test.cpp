@@ -146,11 +146,11 @@ TEST(CheckpointFile, RefusesForeignFilesAndOtherFormats) {
   EXPECT_THROW(read_checkpoint(scratch / "missing"), InputError);
   write_checkpoint(scratch / "a.h5", sample());
   std::string newer = read_text(scratch / "a.h5");
-  newer.replace(newer.find("format 1"), 8, "format 2");
+  newer.replace(newer.find("format 2"), 8, "format 3");
   write_text(scratch / "a.h5", newer);
   const std::string said = message_of<InputError>([&] { read_checkpoint(scratch / "a.h5"); });
-  EXPECT_NE(said.find("has format \"2\""), std::string::npos) << said;
-  EXPECT_NE(said.find("reads format 1"), std::string::npos) << said;
+  EXPECT_NE(said.find("has format \"3\""), std::string::npos) << said;
+  EXPECT_NE(said.find("reads format 2"), std::string::npos) << said;
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ Summary example() {
   summary.status = RunStatus::interrupted;
   summary.case_name = "hole \"A\"";
   summary.version = "1.2.3";
+  summary.instruction_set = "avx2";
   summary.metrics = {{"reaction_x", {210352.0 / 3, "N"}}, {"branches", {2, ""}}};
   summary.states = {{1.1, {{"reaction_x", {1e-300, "N"}}}}, {1.5, {}}};
   summary.energy = {0.1, 1.0 / 3, 0, 0.4, 1e-7};
@@ -36,6 +37,7 @@ TEST(Summary, HasTheKeysThatAreDocumented) {
   EXPECT_EQ(object["status"], "interrupted");
   EXPECT_EQ(object["case"], "hole \"A\"");
   EXPECT_EQ(object["version"], "1.2.3");
+  EXPECT_EQ(object["instruction_set"], "avx2");
   EXPECT_EQ(object["metrics"]["reaction_x"]["value"], 210352.0 / 3);
   EXPECT_EQ(object["metrics"]["reaction_x"]["unit"], "N");
   EXPECT_EQ(object["states"][0]["stretch"], 1.1);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <span>
 #include <stdexcept>
 
 #include "base/error.hpp"
@@ -94,6 +95,66 @@ TEST(Vtu, CompressesWhatRepeats) {
   cloud.fields = {{"damage", 1, std::vector<double>(50000, 0.25)}};
   write_vtu(scratch / "a.vtu", cloud);
   EXPECT_LT(std::filesystem::file_size(scratch / "a.vtu"), 50000u * 32 / 4);
+}
+
+PointCloud random_mesh(std::size_t points, unsigned seed) {
+  PointCloud mesh = random_cloud(points, seed);
+  std::mt19937 random(seed);
+  for (const CellKind kind : {CellKind::quad, CellKind::line, CellKind::triangle, CellKind::line}) {
+    mesh.cells.push_back({kind, {}});
+    const std::size_t nodes = corners(kind) * (1 + random() % 5000);
+    for (std::size_t n = 0; n < nodes; ++n)
+      mesh.cells.back().nodes.push_back(static_cast<std::uint32_t>(random() % points));
+  }
+  return mesh;
+}
+
+TEST(Vtu, RoundTripsMeshes) {
+  const Scratch scratch;
+  for (const std::size_t points : {1, 40, 9000}) {
+    const PointCloud mesh = random_mesh(points, static_cast<unsigned>(points));
+    write_vtu(scratch / "a.vtu", mesh);
+    const PointCloud back = read_vtu(scratch / "a.vtu");
+    expect_same(back, mesh);
+    ASSERT_EQ(back.cells.size(), mesh.cells.size());
+    for (std::size_t n = 0; n < mesh.cells.size(); ++n) {
+      EXPECT_EQ(back.cells[n].kind, mesh.cells[n].kind);
+      EXPECT_EQ(back.cells[n].nodes, mesh.cells[n].nodes);
+    }
+  }
+  write_vtu(scratch / "b.vtu", random_cloud(40, 1));
+  EXPECT_TRUE(read_vtu(scratch / "b.vtu").cells.empty()) << "bare points";
+}
+
+/// A file whose array of cells of this name holds other bytes.
+template <class T>
+void replace_array(const std::filesystem::path& file, const std::string& name, const std::vector<T>& values) {
+  std::string text = read_text(file);
+  const std::size_t begin = text.find('\n', text.find("Name=\"" + name + "\"")) + 1;
+  text.replace(begin, text.find('\n', begin) - begin, encode_vtk_array(std::as_bytes(std::span(values))));
+  write_text(file, text);
+}
+
+TEST(Vtu, RefusesCellsThatItDoesNotKnowOrThatDoNotFit) {
+  const Scratch scratch;
+  PointCloud mesh = random_cloud(4, 1);
+  mesh.cells = {{CellKind::quad, {0, 1, 2, 3}}};
+  const auto refused = [&] { return message_of<InputError>([&] { read_vtu(scratch / "a.vtu"); }); };
+  write_vtu(scratch / "a.vtu", mesh);
+  replace_array<std::uint8_t>(scratch / "a.vtu", "types", {10});
+  EXPECT_NE(refused().find("type 10; expected bare vertices (1), or lines (3)"), std::string::npos);
+  write_vtu(scratch / "a.vtu", mesh);
+  replace_array<std::uint8_t>(scratch / "a.vtu", "types", {5});  // three corners, where there are four
+  EXPECT_NE(refused().find("\"connectivity\""), std::string::npos);
+  for (const std::int64_t node : {std::int64_t{4}, std::int64_t{-1}}) {
+    write_vtu(scratch / "a.vtu", mesh);
+    replace_array<std::int64_t>(scratch / "a.vtu", "connectivity", {0, 1, node, 3});
+    EXPECT_NE(refused().find("a cell has point " + std::to_string(node) + " of 4"), std::string::npos);
+  }
+  mesh.cells = {{CellKind::quad, {0, 1, 2, 4}}};
+  EXPECT_THROW(write_vtu(scratch / "b.vtu", mesh), std::invalid_argument);
+  mesh.cells = {{CellKind::quad, {0, 1, 2}}};
+  EXPECT_THROW(write_vtu(scratch / "b.vtu", mesh), std::invalid_argument);
 }
 
 TEST(Vtu, RefusesFieldsOfTheWrongSize) {
