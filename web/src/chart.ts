@@ -1,0 +1,236 @@
+// One plot: a few lines over x, drawn by uPlot.
+
+import uPlot from "uplot";
+import { DASHES, LINE_COLOURS, LINE_COLOURS_DARK } from "./colours";
+import { h, words } from "./dom";
+import { merge, nearestRow, type Line, type Merged } from "./series";
+import { colour, FONT, theme } from "./theme";
+import { pretty, scaleFor, tickLabels, withUnit } from "./units";
+
+export interface ChartOptions {
+  xTitle: string;
+  xUnit: string;
+  logX: boolean;
+  logY: boolean;
+  /** Where the shown state is on the x axis; one per result. */
+  marks(): number[];
+}
+
+/** A short history is drawn with a dot at each row. */
+const DOTS_UP_TO = 60;
+
+export class Chart {
+  readonly element = h("div", { class: "chart" });
+  readonly legend = h("div", { class: "legend" });
+  private plot: uPlot | null = null;
+  private lines: Line[] = [];
+  private merged: Merged = { x: [], ys: [] };
+  private options: ChartOptions | null = null;
+
+  constructor() {
+    new ResizeObserver(() => this.resize()).observe(this.element);
+  }
+
+  /** Shows `lines`, instead of those there were. */
+  show(lines: Line[], options: ChartOptions): void {
+    this.lines = lines;
+    this.options = options;
+    this.merged = merge(lines);
+    this.build();
+  }
+
+  /** Draws anew: for another theme. */
+  build(): void {
+    if (!this.options) return;
+    this.plot?.destroy();
+    const data = [this.merged.x, ...this.merged.ys] as uPlot.AlignedData;
+    this.plot = new uPlot(this.uplotOptions(this.options), data, this.element);
+    this.drawLegend(null);
+  }
+
+  /** The state shown elsewhere has changed. */
+  mark(): void {
+    this.plot?.redraw(false);
+  }
+
+  /** What is drawn: label and number of points of each line. */
+  summary(): { label: string; points: number }[] {
+    return this.lines.map((line, n) => ({
+      label: line.label,
+      points: this.merged.ys[n]!.filter((y) => y !== null).length,
+    }));
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.element;
+    if (width > 0 && height > 0) this.plot?.setSize({ width, height });
+  }
+
+  private style(n: number): { stroke: string; dash: readonly number[] } {
+    const tables = [...new Set(this.lines.map((line) => line.table))];
+    const columns = [...new Set(this.lines.map((line) => line.name))];
+    const table = tables.indexOf(this.lines[n]!.table);
+    const column = columns.indexOf(this.lines[n]!.name);
+    // Several results: a colour for each; the dashes tell columns apart, or results where there is one column.
+    const hue = tables.length > 1 ? table : column;
+    const dash = tables.length > 1 && columns.length === 1 ? table : column;
+    const colours = theme() === "dark" ? LINE_COLOURS_DARK : LINE_COLOURS;
+    return { stroke: colours[hue % colours.length]!, dash: DASHES[dash % DASHES.length]! };
+  }
+
+  private uplotOptions(options: ChartOptions): uPlot.Options {
+    const units = [...new Set(this.lines.map((line) => line.unit))];
+    const dots = this.merged.x.length <= DOTS_UP_TO;
+    const series = this.lines.map((line, n): uPlot.Series => {
+      const { stroke, dash } = this.style(n);
+      return {
+        label: line.label,
+        scale: `y${units.indexOf(line.unit)}`,
+        stroke,
+        dash: [...dash],
+        width: 1.75,
+        paths: inRowOrder(line),
+        points: { show: dots, size: 5, fill: stroke },
+      };
+    });
+    const axes = [axis("x", options.xTitle, options.xUnit), ...units.map((unit, k) => this.yAxis(unit, k))];
+    return {
+      width: Math.max(50, this.element.clientWidth),
+      height: Math.max(50, this.element.clientHeight),
+      legend: { show: false },
+      cursor: {
+        drag: { x: true, y: true, uni: 12 },
+        points: { size: 8 },
+        dataIdx: (u, s, row) => (s === 0 ? row : nearestRow(u.data[0]!, u.data[s]!, row)) as number,
+      },
+      scales: {
+        x: { time: false, distr: options.logX ? 3 : 1, ...(options.logX ? {} : { range: padded(0) }) },
+        ...Object.fromEntries(units.map((_, k) => [`y${k}`, options.logY ? { distr: 3 as const } : { range: padded(0.06) }])),
+      },
+      series: [{ label: options.xTitle }, ...series],
+      axes,
+      hooks: { setCursor: [(u) => this.drawLegend(u)], draw: [(u) => drawMarks(u, options.marks())] },
+    };
+  }
+
+  private yAxis(unit: string, k: number): uPlot.Axis {
+    const names = [...new Set(this.lines.filter((line) => line.unit === unit).map((line) => line.name))];
+    const title = names.length <= 2 ? names.map(words).join(", ") : commonWord(names);
+    return { ...axis(`y${k}`, title, unit), side: k === 0 ? 3 : 1, grid: { show: k === 0, stroke: colour("grid"), width: 1 } };
+  }
+
+  /** Names with samples of their lines; under the cursor, values with all digits. */
+  private drawLegend(u: uPlot | null): void {
+    const options = this.options!;
+    const row = u?.cursor.idx ?? null;
+    const items = this.lines.map((line, n) => {
+      const at = row === null || !u ? null : nearestRow(u.data[0]!, u.data[n + 1]!, row);
+      const y = at === null ? null : u!.data[n + 1]![at];
+      const value = y == null ? "" : `${y}${line.unit ? " " + pretty(line.unit) : ""}`;
+      return h("span", { class: "item" }, this.sample(n), h("span", { class: "name" }, line.label), value ? h("b", {}, value) : null);
+    });
+    const x = row === null || !u ? null : `${u.data[0]![row]}${options.xUnit ? " " + pretty(options.xUnit) : ""}`;
+    this.legend.replaceChildren(...items, x ? h("span", { class: "item" }, `${options.xTitle} `, h("b", {}, x)) : "");
+  }
+
+  private sample(n: number): SVGSVGElement {
+    const { stroke, dash } = this.style(n);
+    const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+    svg.setAttribute("class", "sample");
+    svg.setAttribute("viewBox", "0 0 26 8");
+    const path = document.createElementNS("http://www.w3.org/2000/svg", "path");
+    path.setAttribute("d", "M0 4H26");
+    path.setAttribute("stroke", stroke);
+    path.setAttribute("stroke-width", "2.5");
+    path.setAttribute("stroke-dasharray", dash.join(" "));
+    svg.append(path);
+    return svg;
+  }
+}
+
+/** Ends of an axis: those of the data, and a little more. */
+function padded(part: number): uPlot.Range.Function {
+  return (_u, low, high) => {
+    if (low === null || high === null) return [0, 1];
+    if (low === high) return low === 0 ? [-1, 1] : [low - 0.1 * Math.abs(low), high + 0.1 * Math.abs(high)];
+    return [low - part * (high - low), high + part * (high - low)];
+  };
+}
+
+function axis(scale: string, title: string, unit: string): uPlot.Axis {
+  const factor = (u: uPlot) => {
+    const { min, max } = u.scales[scale]!;
+    return scaleFor(Math.max(Math.abs(min ?? 0), Math.abs(max ?? 0)), unit);
+  };
+  const isX = scale === "x";
+  return {
+    scale,
+    stroke: colour("ink"),
+    font: `12px ${FONT}`,
+    labelFont: `600 12px ${FONT}`,
+    labelSize: 18,
+    labelGap: 0,
+    size: isX ? 30 : 52,
+    gap: 4,
+    space: isX ? 70 : 36,
+    ticks: { stroke: colour("axis"), width: 1, size: 5 },
+    grid: { stroke: colour("grid"), width: 1 },
+    label: (u) => withUnit(title, factor(u).unit),
+    values: (u, splits) => {
+      const log = u.scales[scale]!.distr === 3;
+      const scaled = splits.map((v) => (v === null ? NaN : v * factor(u).factor));
+      // uPlot leaves out minor ticks of log axes by null.
+      if (log) return splits.map((v) => (v === null || !isPowerOfTen(v) ? "" : String(Number((v * factor(u).factor).toPrecision(3)))));
+      return tickLabels(scaled);
+    },
+  };
+}
+
+const isPowerOfTen = (v: number): boolean => v > 0 && Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9;
+
+/** "energy" for "kinetic energy", "strain energy"; else the first name and dots. */
+function commonWord(names: string[]): string {
+  const sets = names.map((name) => words(name).split(" "));
+  const shared = sets[0]!.filter((word) => sets.every((set) => set.includes(word)));
+  return shared.join(" ");
+}
+
+/** A path through the rows as they are: x may go back and forth, as in a force over a displacement. */
+function inRowOrder(line: Line): uPlot.Series.PathBuilder {
+  return (u, s) => {
+    const stroke = new Path2D();
+    const scale = u.series[s]!.scale!;
+    let pen = false;
+    for (let row = 0; row < line.x.length; ++row) {
+      const [x, y] = [line.x[row]!, line.y[row]!];
+      if (!Number.isFinite(x) || !Number.isFinite(y)) {
+        pen = false;
+        continue;
+      }
+      const [px, py] = [u.valToPos(x, "x", true), u.valToPos(y, scale, true)];
+      if (pen) stroke.lineTo(px, py);
+      else stroke.moveTo(px, py);
+      pen = true;
+    }
+    return { stroke, fill: null, clip: null, flags: 0, gaps: null, band: null } as unknown as uPlot.Series.Paths;
+  };
+}
+
+/** Dashed vertical lines where the shown states are. */
+function drawMarks(u: uPlot, marks: number[]): void {
+  const { ctx, bbox } = u;
+  const ratio = window.devicePixelRatio || 1;
+  ctx.save();
+  ctx.strokeStyle = colour("accent");
+  ctx.lineWidth = 1.5 * ratio;
+  ctx.setLineDash([4 * ratio, 3 * ratio]);
+  for (const mark of new Set(marks)) {
+    const x = u.valToPos(mark, "x", true);
+    if (!(x >= bbox.left - 1 && x <= bbox.left + bbox.width + 1)) continue;
+    ctx.beginPath();
+    ctx.moveTo(x, bbox.top);
+    ctx.lineTo(x, bbox.top + bbox.height);
+    ctx.stroke();
+  }
+  ctx.restore();
+}
