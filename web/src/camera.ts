@@ -6,6 +6,7 @@ export type Vector = [number, number, number];
 export type Box = [number, number, number, number, number, number]; // x from, x to, y from, ...
 
 const ANGLE = 30; // of the view, degrees
+const FREE = 0.06; // part of the picture that stays free around a body
 
 /** A copy of where a camera stands, so that several views can share it. */
 export interface Pose {
@@ -45,22 +46,35 @@ export const DIRECTIONS: Record<string, { from: Vector; up: Vector }> = {
 /** The pose that shows all of `box` in a window of this aspect (width / height), seen from `direction`. */
 export function fittingPose(box: Box, aspect: number, dimension: 2 | 3, direction: string): Pose {
   const focus: Vector = [(box[0] + box[1]) / 2, (box[2] + box[3]) / 2, (box[4] + box[5]) / 2];
-  const [wide, tall, deep] = [box[1] - box[0], box[3] - box[2], box[5] - box[4]];
-  const radius = Math.hypot(wide, tall, deep) / 2 || 1;
+  const half: Vector = [(box[1] - box[0]) / 2, (box[3] - box[2]) / 2, (box[5] - box[4]) / 2];
+  const radius = Math.hypot(...half) || 1;
   if (dimension === 2) {
-    const scale = 0.5 * 1.06 * Math.max(tall, wide / aspect) || 1;
+    const scale = (1 + FREE) * Math.max(half[1], half[0] / aspect) || 1;
     return { position: [focus[0], focus[1], focus[2] + 4 * radius], focus, up: [0, 1, 0], scale };
   }
   const { from, up } = DIRECTIONS[direction]!;
-  const length = Math.hypot(...from);
-  const distance = (radius / Math.sin((ANGLE * Math.PI) / 360)) * Math.max(1, 1 / aspect);
-  const position = focus.map((f, a) => f + (distance * from[a]!) / length) as Vector;
+  const distance = fittingDistance(half, unit(from), up, aspect) || radius;
+  const position = focus.map((f, a) => f + distance * unit(from)[a]!) as Vector;
   return { position, focus, up, scale: radius };
 }
 
-/** World to window: column-major for clip coordinates, and the size of the window in CSS pixels. */
+/** How far the camera must be for all corners of a box to be in the picture. */
+function fittingDistance(half: Vector, from: Vector, up: Vector, aspect: number): number {
+  const right = unit(cross(up, from));
+  const above = cross(from, right);
+  const slope = Math.tan((ANGLE * Math.PI) / 360) / (1 + FREE);
+  let distance = 0;
+  for (let corner = 0; corner < 8; ++corner) {
+    const at = half.map((length, a) => (corner & (1 << a) ? length : -length)) as Vector;
+    const aside = Math.max(Math.abs(dot(at, right)) / aspect, Math.abs(dot(at, above)));
+    distance = Math.max(distance, dot(at, from) + aside / slope);
+  }
+  return distance;
+}
+
+/** From the world to clip coordinates, and the size of the window in CSS pixels. */
 export interface Projection {
-  matrix: number[]; // row-major 4 x 4
+  matrix: number[]; // 4 x 4, row by row
   width: number;
   height: number;
 }
@@ -122,6 +136,8 @@ export function turn(scene: Scene, dx: number, dy: number, height: number): void
 export function cross(a: Vector, b: Vector): Vector {
   return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 }
+
+const dot = (a: Vector, b: Vector): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
 export function unit(a: Vector): Vector {
   const length = Math.hypot(...a) || 1;

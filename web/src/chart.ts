@@ -5,7 +5,7 @@ import { DASHES, LINE_COLOURS, LINE_COLOURS_DARK } from "./colours";
 import { h, words } from "./dom";
 import { merge, nearestRow, type Line, type Merged } from "./series";
 import { colour, FONT, theme } from "./theme";
-import { pretty, scaleFor, tickLabels, withUnit } from "./units";
+import { powerOfTen, pretty, scaleFor, tickLabels, withUnit } from "./units";
 
 export interface ChartOptions {
   xTitle: string;
@@ -17,7 +17,7 @@ export interface ChartOptions {
 }
 
 /** A short history is drawn with a dot at each row. */
-const DOTS_UP_TO = 60;
+const DOTS_UP_TO = 30;
 
 export class Chart {
   readonly element = h("div", { class: "chart" });
@@ -160,9 +160,16 @@ function padded(part: number): uPlot.Range.Function {
 function axis(scale: string, title: string, unit: string): uPlot.Axis {
   const factor = (u: uPlot) => {
     const { min, max } = u.scales[scale]!;
-    return scaleFor(Math.max(Math.abs(min ?? 0), Math.abs(max ?? 0)), unit);
+    const scaled = scaleFor(Math.max(Math.abs(min ?? 0), Math.abs(max ?? 0)), unit);
+    // On a log axis the labels themselves are powers of ten.
+    return u.scales[scale]!.distr === 3 && !isPrefixed(scaled.unit, unit) ? { factor: 1, unit } : scaled;
   };
   const isX = scale === "x";
+  const label = (u: uPlot) => {
+    const whole = withUnit(title, factor(u).unit);
+    const room = (isX ? u.bbox.width : u.bbox.height) / (window.devicePixelRatio || 1);
+    return whole.length * 7 < room || isX ? whole : withUnit("", factor(u).unit);
+  };
   return {
     scale,
     stroke: colour("ink"),
@@ -175,15 +182,27 @@ function axis(scale: string, title: string, unit: string): uPlot.Axis {
     space: isX ? 70 : 36,
     ticks: { stroke: colour("axis"), width: 1, size: 5 },
     grid: { stroke: colour("grid"), width: 1 },
-    label: (u) => withUnit(title, factor(u).unit),
+    label,
     values: (u, splits) => {
-      const log = u.scales[scale]!.distr === 3;
-      const scaled = splits.map((v) => (v === null ? NaN : v * factor(u).factor));
-      // uPlot leaves out minor ticks of log axes by null.
-      if (log) return splits.map((v) => (v === null || !isPowerOfTen(v) ? "" : String(Number((v * factor(u).factor).toPrecision(3)))));
-      return tickLabels(scaled);
+      if (u.scales[scale]!.distr === 3) return logLabels(u, scale, splits, factor(u).factor);
+      return tickLabels(splits.map((v) => v * factor(u).factor));
     },
   };
+}
+
+const isPrefixed = (scaled: string, unit: string): boolean => !scaled.startsWith("10") && scaled.endsWith(unit);
+
+/** Labels at powers of ten; where there are few of them, at twice and five times those, too. */
+function logLabels(u: uPlot, scale: string, splits: (number | null)[], factor: number): string[] {
+  const { min, max } = u.scales[scale]!;
+  const few = Math.log10((max ?? 10) / (min ?? 1)) < 1.5;
+  return splits.map((v) => {
+    if (v === null) return "";
+    const lead = Math.round(v / 10 ** Math.floor(Math.log10(v) + 1e-9));
+    if (!isPowerOfTen(v) && !(few && (lead === 2 || lead === 5))) return "";
+    const scaled = v * factor;
+    return scaled >= 0.001 && scaled < 1e4 ? String(Number(scaled.toPrecision(3))) : powerOfTen(scaled);
+  });
 }
 
 const isPowerOfTen = (v: number): boolean => v > 0 && Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9;

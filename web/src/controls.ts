@@ -60,10 +60,6 @@ export class Controls {
         this.view.fields.length > 0 ? group("Colour", this.field, this.component) : null,
         label("Map", this.map),
         group("Range", this.range, this.low, "–", this.high, this.rangeUnit),
-      ),
-      h(
-        "div",
-        { class: "row" },
         has("displacement") ? group("Deformation ×", this.deformation, this.deformationSlider) : null,
         has("damage") ? h("span", { class: "group" }, h("label", {}, this.clip, "hide damage >"), this.clipAt, this.clipText) : null,
         h("label", {}, this.ghost, "undeformed"),
@@ -75,7 +71,7 @@ export class Controls {
 
   private listen(): void {
     const view = this.view;
-    this.slider.addEventListener("input", () => this.go(Number(this.slider.value)));
+    this.slider.addEventListener("input", () => void this.go(Number(this.slider.value), true));
     this.field.addEventListener("change", () => void this.setField(this.field.value));
     this.component.addEventListener("change", () => void view.set({ component: componentOf(this.component.value) }));
     this.map.addEventListener("change", () => void view.set({ map: this.map.value }));
@@ -86,7 +82,7 @@ export class Controls {
       if (Number.isFinite(value) && value >= 0) void view.set({ deformation: value });
     });
     this.deformationSlider.addEventListener("input", () => {
-      void view.set({ deformation: Number(((Number(this.deformationSlider.value) / 100) * this.largest).toPrecision(3)) });
+      void view.set({ deformation: Number(((Number(this.deformationSlider.value) / 100) * this.largest).toPrecision(3)) }, true);
     });
     const clip = () => void view.set({ clip: this.clip.checked ? Number(this.clipAt.value) : null });
     this.clip.addEventListener("change", clip);
@@ -111,8 +107,8 @@ export class Controls {
     return this.view.set({ field: name, component: component ?? first, ...(typed ? { range: "all" as const } : {}) });
   }
 
-  go(state: number): Promise<void> {
-    return this.view.set({ state });
+  go(state: number, moving = false): Promise<void> {
+    return this.view.set({ state }, moving);
   }
 
   private chooseRange(): void {
@@ -147,7 +143,7 @@ export class Controls {
     this.map.value = settings.map;
     this.range.value = Array.isArray(settings.range) ? "typed" : settings.range;
     const { factor, unit } = this.unitScale;
-    const digits = (v: number) => String(Number((v * factor).toPrecision(5)));
+    const digits = (v: number) => String(Number((v * factor).toPrecision(4)));
     const typed = Array.isArray(settings.range);
     for (const [input, value] of [[this.low, view.range[0]], [this.high, view.range[1]]] as const) {
       input.value = digits(value);
@@ -191,7 +187,7 @@ export class Controls {
     if (this.view.settings.state >= last) await this.go(0);
     while (this.playing && this.view.settings.state < last) {
       await new Promise((next) => setTimeout(next, FRAME));
-      if (this.playing) await this.go(this.view.settings.state + 1);
+      if (this.playing) await this.go(this.view.settings.state + 1, true);
     }
     if (this.playing) this.togglePlay();
   }
@@ -201,9 +197,8 @@ export class Controls {
   }
 
   private async savePicture(): Promise<void> {
-    const title = this.results[0]!.title;
     const name = `${this.results.map((r) => fileName(r.name)).join("-")}-${fileName(this.view.settings.field)}-${short(this.view.value)}.png`;
-    download(name, await this.view.picture(title));
+    download(name, await this.view.picture());
   }
 
   // --- keys ----------------------------------------------------------------------------------------------------
@@ -225,8 +220,8 @@ export class Controls {
     const arrows: Record<string, "left" | "right" | "up" | "down"> = { ArrowLeft: "left", ArrowRight: "right", ArrowUp: "up", ArrowDown: "down" };
     if (shift && arrows[key]) return view.nudge(arrows[key]), true;
     if (key === " ") return this.togglePlay(), true;
-    if (key === "ArrowLeft") return void this.go(state - 1), true;
-    if (key === "ArrowRight") return void this.go(state + 1), true;
+    if (key === "ArrowLeft") return void this.go(state - 1, true), true;
+    if (key === "ArrowRight") return void this.go(state + 1, true), true;
     if (key === "Home") return void this.go(0), true;
     if (key === "End") return void this.go(view.values.length - 1), true;
     if (key === "+" || key === "=") return view.nudge("in"), true;

@@ -12,7 +12,7 @@ export interface Inset {
 }
 /** The field itself is drawn inside of these margins (CSS pixels). */
 export const insetFor = (dimension: 2 | 3): Inset =>
-  dimension === 2 ? { left: 58, right: 92, top: 10, bottom: 40 } : { left: 6, right: 92, top: 6, bottom: 6 };
+  dimension === 2 ? { left: 58, right: 110, top: 10, bottom: 40 } : { left: 6, right: 110, top: 6, bottom: 6 };
 
 export interface Bar {
   title: string;
@@ -67,13 +67,13 @@ function drawAxes(ctx: Ctx, decor: Decor, plane: NonNullable<Decor["plane"]>): v
   ctx.strokeStyle = colour("axis");
   ctx.strokeRect(left - 0.5, top - 0.5, right - left + 1, bottom - top + 1);
 
-  const xs = ticks(plane.x[0] * scale.factor, plane.x[1] * scale.factor, (right - left) / 90);
+  const xs = ticks(plane.x[0] * scale.factor, plane.x[1] * scale.factor, (right - left) / 65);
   tickLabels(xs).forEach((label, n) => {
     const x = left + ((xs[n]! / scale.factor - plane.x[0]) / (plane.x[1] - plane.x[0])) * (right - left);
     line(ctx, x, bottom, x, bottom + 5);
     text(ctx, label, x, bottom + 14, "center");
   });
-  const ys = ticks(plane.y[0] * scale.factor, plane.y[1] * scale.factor, (bottom - top) / 60);
+  const ys = ticks(plane.y[0] * scale.factor, plane.y[1] * scale.factor, (bottom - top) / 50);
   tickLabels(ys).forEach((label, n) => {
     const y = bottom - ((ys[n]! / scale.factor - plane.y[0]) / (plane.y[1] - plane.y[0])) * (bottom - top);
     line(ctx, left - 5, y, left, y);
@@ -145,7 +145,7 @@ function titleLines(ctx: Ctx, bar: Bar, unit: string): string[] {
   const lines: string[] = [];
   for (const word of bar.title.split(" ")) {
     const longer = `${lines.at(-1) ?? ""} ${word}`.trim();
-    if (lines.length > 0 && ctx.measureText(longer).width < 84) lines[lines.length - 1] = longer;
+    if (lines.length > 0 && ctx.measureText(longer).width < 98) lines[lines.length - 1] = longer;
     else lines.push(word);
   }
   return unit ? [...lines, `[${unit}]`] : lines;

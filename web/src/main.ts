@@ -10,7 +10,8 @@ import { helpDialog } from "./help";
 import { Plots } from "./plots";
 import { caseTexts, factsTable, metricsTable, verdictTables } from "./tables";
 import { setTheme, theme } from "./theme";
-import { View, type Picked } from "./view";
+import type { Picked } from "./tip";
+import { View } from "./view";
 import { hasWebGL2 } from "./vtk";
 
 /** For tests and for the curious: the page from the console. */
@@ -37,10 +38,10 @@ declare global {
 }
 
 const STATUS = {
-  finished: "finished",
-  failed: "failed: the run stopped with an error; what is shown is what it had reached",
-  interrupted: "interrupted: what is shown is what the run had reached",
-  unfinished: "unfinished: the run is under way or was killed; what is shown is what it had reached",
+  finished: "The run came to its end.",
+  failed: "The run failed. What it had reached by then is shown; the log below says why.",
+  interrupted: "The run was interrupted. What it had reached by then is shown.",
+  unfinished: "The run is not finished: it goes on, or was killed. What it has written is shown.",
 } as const;
 
 function header(data: PageData): HTMLElement {
@@ -76,7 +77,7 @@ const words = (error: unknown): string =>
 function remarks(results: ResultData[]): HTMLElement[] {
   const named = (r: ResultData, text: string) => (results.length > 1 ? `${r.name}: ${text}` : text);
   return results.flatMap((r) => [
-    ...(r.status === "finished" ? [] : [message(named(r, `The run has ${STATUS[r.status]}.`.replace("has failed", "failed").replace("has interrupted", "was interrupted").replace("has unfinished", "is unfinished")), r.status === "failed" ? "error" : "warning")]),
+    ...(r.status === "finished" ? [] : [message(named(r, STATUS[r.status]), r.status === "failed" ? "error" : "warning")]),
     ...r.notes.map((note) => message(named(r, note), "note")),
   ]);
 }
@@ -96,7 +97,11 @@ async function openView(data: PageData, place: HTMLElement): Promise<{ view: Vie
   const view = new View(drawn, data.colour_maps);
   const controls = new Controls(view, drawn, data.colour_maps);
   place.append(view.element, controls.element);
-  view.onError((error) => place.prepend(message(words(error), "error")));
+  const told = new Set<string>();
+  view.onError((error) => {
+    if (!told.has(words(error))) place.prepend(message(words(error), "error"));
+    told.add(words(error));
+  });
   try {
     await view.open();
     await controls.scaleSlider();
@@ -149,10 +154,9 @@ async function start(): Promise<void> {
   page.replaceChildren(header(data), h("main", {}, stage, ...sections(results)));
 
   const [opened] = await Promise.all([openView(data, viewPlace), openPlots(plots, results, plotPlace)]);
-  if (!opened) {
-    stage.classList.add("without-view");
-    return;
-  }
+  stage.classList.toggle("without-view", !opened);
+  stage.classList.toggle("without-plots", plots.summary().length === 0);
+  if (!opened) return;
   shown = opened.view;
   opened.view.onChange(() => plots.mark());
   plots.mark();

@@ -1,4 +1,5 @@
-// How far the points around each point went apart: discs grow with them, so that a stretched sheet stays closed.
+// The points around each point: discs grow as these go apart, so that a stretched sheet stays closed, and what lies
+// inside of a solid is not drawn.
 
 /** Neighbours of point i: list[start[i]] ... list[start[i + 1] - 1]. */
 export interface Neighbours {
@@ -95,10 +96,14 @@ function distance(xyz: Float32Array, i: number, j: number): number {
   return Math.sqrt(x * x + y * y + z * z);
 }
 
+/** How two points went apart: their distance now by their distance at first. */
+const stretchOf = (undeformed: Float32Array, deformed: Float32Array, i: number, j: number): number =>
+  distance(deformed, i, j) / distance(undeformed, i, j);
+
 /**
  * Writes the radius of each point into `radii`: `radius` times the largest stretch between it and its neighbours. A
  * neighbour across a crack goes far without the material being stretched, so the stretch counts only up to a little
- * more than what 95 % of the points have.
+ * more than what 95 % of the points have. Returns that limit.
  */
 export function stretchedRadii(
   undeformed: Float32Array,
@@ -106,18 +111,50 @@ export function stretchedRadii(
   neighbours: Neighbours,
   radius: number,
   radii: Float32Array,
-): void {
+): number {
   const { start, list } = neighbours;
   for (let i = 0; i < radii.length; ++i) {
     let most = start[i] === start[i + 1] ? 1 : 0;
-    for (let k = start[i]!; k < start[i + 1]!; ++k) {
-      const stretch = distance(deformed, i, list[k]!) / distance(undeformed, i, list[k]!);
-      if (stretch > most) most = stretch;
-    }
+    for (let k = start[i]!; k < start[i + 1]!; ++k) most = Math.max(most, stretchOf(undeformed, deformed, i, list[k]!));
     radii[i] = most;
   }
   const limit = 1.1 * percentile(radii, 0.95);
   for (let i = 0; i < radii.length; ++i) radii[i] = radius * Math.max(0.05, Math.min(radii[i]!, limit));
+  return limit;
+}
+
+const ALL_SIDES = 0b111111;
+
+/**
+ * Whether point i of a solid cannot be seen, for it has on all six sides a neighbour that is shown and has not gone
+ * farther away than `limit` times its distance (as across an open crack).
+ */
+export function isCovered(
+  i: number,
+  undeformed: Float32Array,
+  deformed: Float32Array,
+  neighbours: Neighbours,
+  shown: Uint8Array,
+  limit: number,
+): boolean {
+  const { start, list } = neighbours;
+  let sides = 0;
+  for (let k = start[i]!; k < start[i + 1]!; ++k) {
+    const j = list[k]!;
+    if (shown[j] && stretchOf(undeformed, deformed, i, j) <= limit) sides |= 1 << sideOf(undeformed, i, j);
+  }
+  return sides === ALL_SIDES;
+}
+
+/** 0 to 5: the side (-x, +x, -y, ...) of i on which j lies. */
+function sideOf(xyz: Float32Array, i: number, j: number): number {
+  const x = xyz[3 * j]! - xyz[3 * i]!;
+  const y = xyz[3 * j + 1]! - xyz[3 * i + 1]!;
+  const z = xyz[3 * j + 2]! - xyz[3 * i + 2]!;
+  const [ax, ay, az] = [Math.abs(x), Math.abs(y), Math.abs(z)];
+  if (ax >= ay && ax >= az) return x > 0 ? 1 : 0;
+  if (ay >= az) return y > 0 ? 3 : 2;
+  return z > 0 ? 5 : 4;
 }
 
 function percentile(values: Float32Array, part: number): number {

@@ -70,8 +70,8 @@ function plotsOf(name: string, history: HistoryData): PlotPlan[] {
   }
   const unit = history.columns[rest[0] ?? 0]!.unit;
   const columns = rest.filter((c) => history.columns[c]!.unit === unit).slice(0, FIRST_LINES);
-  const title = words(name);
-  return [{ title: title.charAt(0).toUpperCase() + title.slice(1), columns, files: true }];
+  const title = /^[a-z_]+$/.test(name) ? name.charAt(0).toUpperCase() + words(name).slice(1) : name;
+  return [{ title, columns, files: true }];
 }
 
 class PlotCard {
@@ -147,14 +147,7 @@ class PlotCard {
       return h("label", {}, box, ` ${withUnit(words(name), unit)}`);
     });
     const list = h("div", { class: "menu", tabindex: "-1" }, ...boxes);
-    const fold = h("details", { class: "choice" }, h("summary", { "aria-label": `${this.title}: columns` }, "columns"), list);
-    fold.addEventListener("focusout", (event) => {
-      if (!fold.contains(event.relatedTarget as Node | null)) fold.open = false;
-    });
-    fold.addEventListener("keydown", (event) => {
-      if (event.key === "Escape") fold.open = false;
-    });
-    return fold;
+    return foldOut("columns", `${this.title}: columns`, list);
   }
 
   /** There are two y axes: a column in a third unit takes the place of those in the unit chosen first. */
@@ -169,9 +162,22 @@ class PlotCard {
   private fileButtons(): HTMLElement {
     const buttons = this.tables.map((table) => {
       const save = () => download(`${fileName(table.result)}-${fileName(table.history.name)}.csv`, new Blob([csv(table)], { type: "text/csv" }));
-      const label = this.tables.length > 1 ? `CSV: ${table.result}` : "CSV";
+      const label = this.tables.length > 1 ? table.result : "CSV";
       return h("button", { type: "button", class: "small", title: `Save the history of ${table.result} as CSV`, onclick: save }, label);
     });
-    return h("span", { class: "files" }, ...buttons);
+    if (buttons.length === 1) return buttons[0]!;
+    return foldOut("CSV", `${this.title}: CSV files`, h("div", { class: "menu", tabindex: "-1" }, ...buttons));
   }
+}
+
+/** A list that opens on a click and closes when the focus leaves it. */
+function foldOut(name: string, label: string, list: HTMLElement): HTMLElement {
+  const fold = h("details", { class: "choice" }, h("summary", { "aria-label": label }, name), list);
+  fold.addEventListener("focusout", (event) => {
+    if (!fold.contains(event.relatedTarget as Node | null)) fold.open = false;
+  });
+  fold.addEventListener("keydown", (event) => {
+    if (event.key === "Escape") fold.open = false;
+  });
+  return fold;
 }

@@ -1,18 +1,9 @@
 // One result drawn by vtk.js: a body of points and cells whose coordinates and colours change in place.
 
 import type { Cells } from "./data";
-import { findNeighbours, stretchedRadii, type Neighbours } from "./neighbours";
-import {
-  vtkActor,
-  vtkDataArray,
-  vtkMapper,
-  vtkOpenGLRenderWindow,
-  vtkPoints,
-  vtkPolyData,
-  vtkRenderer,
-  vtkRenderWindow,
-  vtkSphereMapper,
-} from "./vtk";
+import { Dots, spread } from "./dots";
+import { findNeighbours, isCovered, stretchedRadii, type Neighbours } from "./neighbours";
+import { vtkActor, vtkDataArray, vtkMapper, vtkOpenGLRenderWindow, vtkPoints, vtkPolyData, vtkRenderer, vtkRenderWindow, vtkSphereMapper } from "./vtk";
 
 /** The undeformed body: points (x y z of each) and the cells between them. */
 export interface Body {
@@ -24,10 +15,12 @@ export interface Body {
 
 export type Rgb = [number, number, number];
 
-// Discs of this radius (in spacings) reach the middle of a lattice cell: they tile without gaps.
-const DISC = 0.72;
-// Spheres of a solid overlap a little, so that one does not look through the body.
-const BALL = 0.6;
+// Radius (in spacings) of discs and spheres: they reach the middle of the square between four points of a lattice, so
+// that a sheet, or the surface of a solid, has no gaps.
+const RADIUS = 0.72;
+// Where a full picture takes longer than this (ms), moving pictures show fewer and larger points.
+const SLOW = 120;
+const COARSE_POINTS = 20000;
 
 export class Scene {
   readonly renderWindow = vtkRenderWindow.newInstance();
@@ -42,13 +35,16 @@ export class Scene {
 
   private readonly points = vtkPoints.newInstance();
   private readonly colours;
-  private readonly radiusArray;
-  private readonly bodyData = vtkPolyData.newInstance();
-  private readonly meshData = vtkPolyData.newInstance();
+  private readonly mesh = vtkPolyData.newInstance();
   private readonly bare: Uint8Array;
-  private readonly ghost: vtkActor | null = null;
-  private neighbours: Neighbours | null = null;
+  private readonly ghost: vtkActor;
+  private readonly neighbours: Neighbours;
+  private readonly dots: Dots;
+  private coarse: Dots | null = null;
+  private drawn = new Uint32Array();
+  private stretchLimit = 1;
   private hidden = false;
+  private slow = false;
 
   constructor(
     readonly body: Body,
@@ -57,54 +53,46 @@ export class Scene {
     const count = body.positions.length / 3;
     this.deformed = body.positions.slice();
     this.rgba = new Uint8Array(count * 4).fill(255);
-    this.radii = new Float32Array(count).fill(this.radius);
+    this.radii = new Float32Array(count);
     this.shown = new Uint8Array(count).fill(1);
     this.bare = bareMask(body);
+    this.neighbours = findNeighbours(body.positions, 1.3 * body.spacing);
     this.points.setData(this.deformed, 3);
     this.colours = vtkDataArray.newInstance({ name: "colour", numberOfComponents: 4, values: this.rgba });
-    this.radiusArray = vtkDataArray.newInstance({ name: "radius", numberOfComponents: 1, values: this.radii });
 
     this.renderWindow.addRenderer(this.renderer);
     this.glWindow.setContainer(container);
     this.renderWindow.addView(this.glWindow);
     this.ghost = this.addGhost();
-    if (this.bare.includes(1)) this.addPoints();
+    this.dots = this.addDots(count);
     if (body.cells.length > 0) this.addMesh();
     this.renderer.getActiveCamera().setParallelProjection(body.dimension === 2);
   }
 
-  private get radius(): number {
-    return this.body.spacing * (this.body.dimension === 2 ? DISC : BALL);
-  }
-
-  private addPoints(): void {
-    this.bodyData.setPoints(this.points);
-    this.bodyData.getPointData().setScalars(this.colours);
-    this.bodyData.getPointData().addArray(this.radiusArray);
-    const mapper = vtkSphereMapper.newInstance();
-    mapper.setInputData(this.bodyData);
-    mapper.setScaleArray("radius");
-    this.addActor(mapper, this.body.dimension === 3);
+  private addDots(most: number): Dots {
+    const dots = new Dots(most);
+    this.addActor(dots.actor);
+    return dots;
   }
 
   private addMesh(): void {
-    this.meshData.setPoints(this.points);
-    this.meshData.getPointData().setScalars(this.colours);
+    this.mesh.setPoints(this.points);
+    this.mesh.getPointData().setScalars(this.colours);
     const mapper = vtkMapper.newInstance();
-    mapper.setInputData(this.meshData);
-    this.addActor(mapper, this.body.dimension === 3);
-    this.updateCells();
-  }
-
-  private addActor(mapper: vtkMapper, lit: boolean): vtkActor {
+    mapper.setInputData(this.mesh);
     mapper.setColorModeToDirectScalars();
     const actor = vtkActor.newInstance();
     actor.setMapper(mapper);
-    actor.getProperty().setLighting(lit);
-    actor.getProperty().setAmbient(0.25);
-    actor.getProperty().setDiffuse(0.75);
+    this.addActor(actor);
+    this.updateCells();
+  }
+
+  private addActor(actor: vtkActor): void {
+    // Without light the colours of a sheet are exactly those of the bar.
+    actor.getProperty().setLighting(this.body.dimension === 3);
+    actor.getProperty().setAmbient(0.35);
+    actor.getProperty().setDiffuse(0.65);
     this.renderer.addActor(actor);
-    return actor;
   }
 
   /** The undeformed body, faint and behind: small dots, or the wires of a mesh. */
@@ -134,43 +122,76 @@ export class Scene {
   }
 
   setGhost(on: boolean): void {
-    this.ghost!.setVisibility(on);
+    this.ghost.setVisibility(on);
   }
 
   setGround(ground: Rgb, faint: Rgb): void {
     this.renderer.setBackground(ground);
-    this.ghost!.getProperty().setColor(faint);
+    this.ghost.getProperty().setColor(faint);
   }
 
   /** Moves the points to undeformed + scale * displacement; null: to where they were. */
   deform(displacement: Float32Array | null, scale: number): void {
     const { positions, spacing } = this.body;
-    for (let i = 0; i < positions.length; ++i)
-      this.deformed[i] = positions[i]! + (displacement ? scale * displacement[i]! : 0);
-    this.neighbours ??= findNeighbours(positions, 1.3 * spacing);
-    stretchedRadii(positions, this.deformed, this.neighbours, this.radius, this.radii);
-    this.points.modified();
+    const by = displacement ? scale : 0;
+    for (let i = 0; i < positions.length; ++i) this.deformed[i] = by === 0 ? positions[i]! : positions[i]! + by * displacement![i]!;
+    this.stretchLimit = stretchedRadii(positions, this.deformed, this.neighbours, RADIUS * spacing, this.radii);
   }
 
-  /** Hides what is not `shown`, and takes over changed colours and radii. */
+  /** Takes over places, colours, and what is `shown`. */
   update(): void {
-    for (let i = 0; i < this.radii.length; ++i) if (!this.shown[i] || !this.bare[i]) this.radii[i] = 0;
+    this.drawn = this.pointsToDraw();
+    this.dots.fill(this, this.drawn);
     if (this.body.cells.length > 0 && (this.hidden || this.shown.includes(0))) this.updateCells();
     this.colours.modified();
-    this.radiusArray.modified();
     this.points.modified();
-    this.bodyData.modified();
-    this.meshData.modified();
+    this.mesh.modified();
+  }
+
+  private pointsToDraw(): Uint32Array<ArrayBuffer> {
+    const { body, shown, bare, deformed, neighbours } = this;
+    const drawn = new Uint32Array(shown.length);
+    let count = 0;
+    for (let i = 0; i < shown.length; ++i) {
+      if (!shown[i] || !bare[i]) continue;
+      if (body.dimension === 3 && isCovered(i, body.positions, deformed, neighbours, shown, this.stretchLimit)) continue;
+      drawn[count++] = i;
+    }
+    return drawn.slice(0, count);
   }
 
   private updateCells(): void {
     this.hidden = this.shown.includes(0);
-    setCells(this.meshData, this.body.cells, (node) => this.shown[node] === 1);
+    setCells(this.mesh, this.body.cells, (node) => this.shown[node] === 1);
   }
 
-  render(): void {
+  /**
+   * Draws. `moving`: the next picture follows soon, so a slow one may be coarse. Returns whether it was.
+   * Without a graphics card 300 000 points take a second, and nobody can move a body at that rate.
+   */
+  render(moving = false): boolean {
+    const many = this.drawn.length > 2 * COARSE_POINTS;
+    const coarse = moving && this.slow && many;
+    if (coarse) {
+      this.coarse ??= this.addDots(COARSE_POINTS);
+      this.coarse.fill(this, spread(this.drawn, COARSE_POINTS), 1.25 * Math.sqrt(this.drawn.length / COARSE_POINTS));
+    }
+    this.coarse?.actor.setVisibility(coarse);
+    this.dots.actor.setVisibility(!coarse && this.drawn.length > 0);
     this.renderer.resetCameraClippingRange();
+    const start = performance.now();
     this.renderWindow.render();
+    if (many && !coarse) {
+      this.waitForPicture();
+      this.slow = performance.now() - start > SLOW;
+    }
+    return coarse;
+  }
+
+  /** Drawing goes on after the call that asked for it; reading a pixel waits for its end. */
+  private waitForPicture(): void {
+    const gl = this.canvas.getContext("webgl2");
+    gl?.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
   /** Fits the drawing to its container; the ratio of device to CSS pixels may have changed, too. */

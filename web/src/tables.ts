@@ -85,7 +85,7 @@ export function factsTable(results: ResultData[]): HTMLElement {
     { text: label },
     ...results.map(({ facts }): Cell => ({ text: facts.find((f) => f.label === label)?.value ?? "–" })),
   ]);
-  return table(["", ...resultColumns(results, "run")], rows, "Run facts");
+  return table(["fact", ...resultColumns(results, "value")], rows, "Run facts");
 }
 
 const TEXTS = [

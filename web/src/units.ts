@@ -34,6 +34,13 @@ export function scaleFor(largest: number, unit: string): Scale {
   return { factor: 10 ** -exponent, unit: `${superscript(exponent)}${unit ? " " + unit : ""}` };
 }
 
+/** "10⁵", "2·10⁵". */
+export function powerOfTen(value: number): string {
+  const exponent = Math.floor(Math.log10(Math.abs(value)) + 1e-9);
+  const lead = Number((value / 10 ** exponent).toPrecision(3));
+  return `${lead === 1 ? "" : `${lead}·`}${superscript(exponent)}`;
+}
+
 function superscript(exponent: number): string {
   return "10" + [...String(exponent)].map((c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(c)]!)).join("");
 }
@@ -42,7 +49,7 @@ function superscript(exponent: number): string {
 export const pretty = (unit: string): string => unit.replace(/\^([23])/g, (_, n: string) => (n === "2" ? "²" : "³")).replaceAll("*", "·");
 
 /** "force [kN]"; without brackets where there is no unit. */
-export const withUnit = (name: string, unit: string): string => (unit ? `${name} [${pretty(unit)}]` : name);
+export const withUnit = (name: string, unit: string): string => (unit ? `${name} [${pretty(unit)}]`.trim() : name);
 
 /** `value` rounded to `digits` significant digits, without trailing zeros. */
 export function short(value: number, digits = 4): string {
@@ -73,7 +80,7 @@ export function ticks(low: number, high: number, wanted: number): number[] {
   if (!(span > 0) || !Number.isFinite(span)) return [low];
   const raw = span / Math.max(1, wanted);
   const power = 10 ** Math.floor(Math.log10(raw));
-  const step = power * ([1, 2, 5, 10].find((s) => s * power >= raw * 0.999) ?? 10);
+  const step = power * ([1, 2, 5, 10].find((s) => s * power >= raw * 0.75) ?? 10);
   const found: number[] = [];
   for (let n = Math.ceil(low / step - 1e-9); n * step <= high + 1e-9 * span; ++n) found.push(n === 0 ? 0 : n * step);
   return found;
