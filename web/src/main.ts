@@ -117,11 +117,7 @@ async function openPlots(plots: Plots, results: ResultData[], place: HTMLElement
     place.append(message("This browser is too old to unpack the data (no DecompressionStream): fields and plots are left out. Tables work."));
     return;
   }
-  try {
-    await plots.open(results);
-  } catch (error) {
-    place.prepend(message(words(error), "error"));
-  }
+  await plots.open(results, (error) => place.prepend(message(words(error), "error")));
 }
 
 function sections(results: ResultData[]): HTMLElement[] {
@@ -155,7 +151,7 @@ async function start(): Promise<void> {
 
   const [opened] = await Promise.all([openView(data, viewPlace), openPlots(plots, results, plotPlace)]);
   stage.classList.toggle("without-view", !opened);
-  stage.classList.toggle("without-plots", plots.summary().length === 0);
+  stage.classList.toggle("without-plots", plotPlace.querySelector(".plot, .message") === null);
   if (!opened) return;
   shown = opened.view;
   opened.view.onChange(() => plots.mark());

@@ -21,15 +21,14 @@ export class Plots {
     onTheme(() => this.cards.forEach((card) => card.chart.build()));
   }
 
-  /** Unpacks the histories of all results and plots those of one name together. */
-  async open(results: ResultData[]): Promise<void> {
+  /** Unpacks the histories of all results and plots those of one name together; tells what is damaged. */
+  async open(results: ResultData[], failed: (error: unknown) => void): Promise<void> {
     const names = [...new Set(results.flatMap((result) => result.histories.map((history) => history.name)))];
     for (const name of names) {
       const tables: Table[] = [];
       for (const result of results)
-        for (const history of result.histories)
-          if (history.name === name && history.rows > 0)
-            tables.push({ result: result.name, history, columns: await readHistory(history) });
+        for (const history of result.histories.filter((h) => h.name === name && h.rows > 0))
+          await readHistory(history).then((columns) => tables.push({ result: result.name, history, columns }), failed);
       if (tables.length > 0) this.add(name, tables);
     }
     if (this.cards.length === 0) this.element.append(h("p", { class: "quiet" }, "This result has no histories."));

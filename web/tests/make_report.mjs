@@ -70,7 +70,7 @@ function result({ name, title, parameter, states, points, dimension, spacing, ce
       values: pack("float64", columns.flatMap(({ of }) => rows.map(of))),
       ...more,
     })),
-    view: {
+    view: rest.view === null ? null : {
       dimension,
       spacing,
       points: points.length,
@@ -177,7 +177,7 @@ export const FRACTURE = {
   },
   displacement([x, y], time) {
     const open = x < this.tip(time) ? 1e-5 : 4e-6;
-    return [0, Math.sign(y) * open * (time / 48e-6), 0];
+    return [1e-4 * x * (time / 48e-6), Math.sign(y) * open * (1 - 20 * x) * (time / 48e-6), 0];
   },
 };
 
