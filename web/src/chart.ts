@@ -22,12 +22,14 @@ const DOTS_UP_TO = 30;
 export class Chart {
   readonly element = h("div", { class: "chart" });
   readonly legend = h("div", { class: "legend" });
+  private readonly tip = h("div", { class: "tip chart-tip", hidden: true });
   private plot: uPlot | null = null;
   private lines: Line[] = [];
   private merged: Merged = { x: [], ys: [] };
   private options: ChartOptions | null = null;
 
   constructor() {
+    this.element.append(this.tip);
     new ResizeObserver(() => this.resize()).observe(this.element);
   }
 
@@ -43,9 +45,10 @@ export class Chart {
   build(): void {
     if (!this.options) return;
     this.plot?.destroy();
+    this.tip.hidden = true;
     const data = [this.merged.x, ...this.merged.ys] as uPlot.AlignedData;
     this.plot = new uPlot(this.uplotOptions(this.options), data, this.element);
-    this.drawLegend(null);
+    this.drawLegend();
   }
 
   /** The state shown elsewhere has changed. */
@@ -109,7 +112,7 @@ export class Chart {
       },
       series: [{ label: options.xTitle }, ...series],
       axes,
-      hooks: { setCursor: [(u) => this.drawLegend(u)], draw: [(u) => drawMarks(u, options.marks())] },
+      hooks: { setCursor: [(u) => this.drawTip(u)], draw: [(u) => drawMarks(u, options.marks())] },
     };
   }
 
@@ -119,18 +122,35 @@ export class Chart {
     return { ...axis(`y${k}`, title, unit), side: k === 0 ? 3 : 1, grid: { show: k === 0, stroke: colour("grid"), width: 1 } };
   }
 
-  /** Names with samples of their lines; under the cursor, values with all digits. */
-  private drawLegend(u: uPlot | null): void {
-    const options = this.options!;
-    const row = u?.cursor.idx ?? null;
-    const items = this.lines.map((line, n) => {
-      const at = row === null || !u ? null : nearestRow(u.data[0]!, u.data[n + 1]!, row);
-      const y = at === null ? null : u!.data[n + 1]![at];
-      const value = y == null ? "" : `${y}${line.unit ? " " + pretty(line.unit) : ""}`;
-      return h("span", { class: "item" }, this.sample(n), h("span", { class: "name" }, line.label), value ? h("b", {}, value) : null);
+  private drawLegend(): void {
+    this.legend.replaceChildren(...this.lines.map((line, n) => h("span", { class: "item" }, this.sample(n), line.label)));
+  }
+
+  /** The values under the cursor, with all digits. */
+  private drawTip(u: uPlot): void {
+    const { idx: row, left = -1 } = u.cursor;
+    this.tip.hidden = row == null || left < 0;
+    if (row == null || left < 0) return;
+    const { xTitle, xUnit } = this.options!;
+    const digits = (value: number, unit: string) => `${value}${unit ? " " + pretty(unit) : ""}`;
+    const rows = this.lines.map((line, n) => {
+      const at = nearestRow(u.data[0]!, u.data[n + 1]!, row);
+      const y = at === null ? null : u.data[n + 1]![at];
+      return h("tr", {}, h("th", {}, this.sample(n), " ", line.label), h("td", {}, y == null ? "–" : digits(y, line.unit)));
     });
-    const x = row === null || !u ? null : `${u.data[0]![row]}${options.xUnit ? " " + pretty(options.xUnit) : ""}`;
-    this.legend.replaceChildren(...items, x ? h("span", { class: "item" }, `${options.xTitle} `, h("b", {}, x)) : "");
+    const head = h("tr", {}, h("th", {}, xTitle), h("td", {}, digits(u.data[0]![row]!, xUnit)));
+    this.tip.replaceChildren(h("table", {}, head, ...rows));
+    this.placeTip();
+  }
+
+  /** Beside the chart, or below it where there is no room: over the chart it would hide the lines. */
+  private placeTip(): void {
+    const chart = this.element.getBoundingClientRect();
+    const { offsetWidth: width, offsetHeight: height } = this.tip;
+    const beside = chart.left - width - 14;
+    const top = beside > 0 ? chart.top : chart.bottom;
+    this.tip.style.left = `${beside > 0 ? beside : Math.max(4, chart.right - width)}px`;
+    this.tip.style.top = `${Math.max(4, Math.min(top, window.innerHeight - height - 4))}px`;
   }
 
   private sample(n: number): SVGSVGElement {

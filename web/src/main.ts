@@ -8,7 +8,7 @@ import { h } from "./dom";
 import type { Component } from "./fields";
 import { helpDialog } from "./help";
 import { Plots } from "./plots";
-import { caseTexts, factsTable, metricsTable, verdictTables } from "./tables";
+import { caseTexts, factsTable, metricsTable, verdictTable } from "./tables";
 import { setTheme, theme } from "./theme";
 import type { Picked } from "./tip";
 import { View } from "./view";
@@ -82,9 +82,14 @@ function remarks(results: ResultData[]): HTMLElement[] {
   ]);
 }
 
+/** More pictures side by side are too small, and browsers limit the number of drawings by WebGL in a page. */
+const MOST_PANELS = 6;
+
 /** The view with its controls; null (and a message in `place`) where there is nothing to draw or it cannot be drawn. */
 async function openView(data: PageData, place: HTMLElement): Promise<{ view: View; controls: Controls } | null> {
-  const drawn = data.results.filter((r) => r.view !== null);
+  const all = data.results.filter((r) => r.view !== null);
+  const drawn = all.slice(0, MOST_PANELS);
+  if (drawn.length < all.length) place.append(message(`The first ${MOST_PANELS} of ${all.length} results are drawn; plots and tables have all of them.`, "note"));
   if (drawn.length === 0) {
     place.append(message("This result has no field files: there is nothing to draw.", "note"));
     return null;
@@ -123,7 +128,7 @@ async function openPlots(plots: Plots, results: ResultData[], place: HTMLElement
 function sections(results: ResultData[]): HTMLElement[] {
   const section = (id: string, title: string, ...of: Node[]) => h("section", { id, "aria-label": title }, h("h2", {}, title), ...of);
   return [
-    section("numbers", "Numbers", verdictTables(results), metricsTable(results)),
+    section("numbers", "Numbers", verdictTable(results), metricsTable(results)),
     section("run", "Run", factsTable(results)),
     section("case", "Case", caseTexts(results)),
   ];

@@ -44,39 +44,35 @@ function percent(deviation: number | null): Cell {
   return { text, title: String(deviation), class: "number" };
 }
 
-function verdictRow(verdict: Verdict, parameter: ResultData["parameter"]): Cell[] {
+/** What several results may have been held against alike: the same value at the same state. */
+const sameVerdict = (v: Verdict): string => JSON.stringify([v.what, v.at, v.kind, v.expected]);
+
+function verdictRow(key: string, results: ResultData[]): Cell[] {
+  const found = results.map(({ verdicts }) => verdicts.find((v) => sameVerdict(v) === key));
+  const first = found.find((v) => v !== undefined)!;
+  const { parameter } = results[found.indexOf(first)]!;
   const value = (v: number | null): Cell => ({
-    text: quantity(v, verdict.unit, 6),
-    title: v === null ? undefined : exact(v, verdict.unit),
+    text: quantity(v, first.unit, 6),
+    title: v === null ? undefined : exact(v, first.unit),
     class: "number",
   });
-  const none: Cell = { text: "", class: "number" };
-  return [
-    { text: words(verdict.what) },
-    { text: `${parameter.name} ${quantity(verdict.at, parameter.unit)}` },
-    verdict.kind === "published" ? value(verdict.expected) : none,
-    verdict.kind === "reference" ? value(verdict.expected) : none,
-    value(verdict.ours),
-    percent(verdict.deviation),
-    { text: verdict.limit },
-    { text: VERDICTS[verdict.verdict] ?? verdict.verdict, class: `verdict ${verdict.verdict}` },
-    { text: verdict.source },
-  ];
+  const expected = (kind: Verdict["kind"]): Cell => (first.kind === kind ? value(first.expected) : { text: "" });
+  const ours = found.flatMap((v): Cell[] => {
+    if (!v) return [{ text: "–" }, { text: "" }, { text: "" }];
+    return [value(v.ours), percent(v.deviation), { text: VERDICTS[v.verdict] ?? v.verdict, class: `verdict ${v.verdict}` }];
+  });
+  const at = `${parameter.name} ${quantity(first.at, parameter.unit)}`;
+  return [{ text: words(first.what) }, { text: at, class: "number" }, expected("published"), expected("reference"), ...ours, { text: first.limit, class: "number" }, { text: first.source }];
 }
 
-const VERDICT_HEAD = ["what", "at", "published", "reference", "ours", "deviation", "limit", "verdict", "source"];
-
-export function verdictTables(results: ResultData[]): HTMLElement {
+/** Published / reference / ours / deviation; of several results, ours and deviation side by side. */
+export function verdictTable(results: ResultData[]): HTMLElement {
   const some = results.filter((r) => r.verdicts.length > 0);
   if (some.length === 0) return h("p", { class: "quiet" }, "The case expects nothing: there is no published or reference value to compare with.");
-  return h(
-    "div",
-    { class: "verdicts" },
-    ...some.flatMap((result) => {
-      const label = results.length > 1 ? `Published, reference, ours: ${result.name}` : "Published, reference, ours";
-      return [h("h3", {}, label), table(VERDICT_HEAD, result.verdicts.map((v) => verdictRow(v, result.parameter)), label)];
-    }),
-  );
+  const keys = allNames(some.map((r) => r.verdicts.map(sameVerdict)));
+  const ours = some.flatMap(({ name }) => [results.length > 1 ? `ours: ${name}` : "ours", "deviation", "verdict"]);
+  const head = ["what", "at", "published", "reference", ...ours, "limit", "source"];
+  return h("div", { class: "verdicts" }, table(head, keys.map((key) => verdictRow(key, some)), "Published, reference, ours"));
 }
 
 export function factsTable(results: ResultData[]): HTMLElement {

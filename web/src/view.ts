@@ -51,7 +51,6 @@ export class View {
   private waiting = false;
   private frame = 0;
   private still = 0;
-  private direction = "oblique";
 
   constructor(
     private readonly results: ResultData[],
@@ -292,8 +291,7 @@ export class View {
   }
 
   /** Shows all of the bodies as they are now and at the first and the last state; solids from `direction`. */
-  async fit(direction = this.direction): Promise<void> {
-    this.direction = direction;
+  async fit(direction = "oblique"): Promise<void> {
     const box = await this.bounds();
     // Wide bodies stand one below the other, where there is more room for them.
     const [wide, tall] = sizeOf(box);

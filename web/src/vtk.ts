@@ -19,7 +19,10 @@ export { default as vtkOpenGLRenderWindow } from "@kitware/vtk.js/Rendering/Open
 /** Whether the browser can draw the field view. */
 export function hasWebGL2(): boolean {
   try {
-    return document.createElement("canvas").getContext("webgl2") !== null;
+    const context = document.createElement("canvas").getContext("webgl2");
+    // A browser allows a page some sixteen contexts: this one is given back.
+    context?.getExtension("WEBGL_lose_context")?.loseContext();
+    return context !== null;
   } catch {
     return false;
   }

@@ -162,8 +162,8 @@ for (const name of ["membrane", "fracture"]) {
       for (const point of sample(result.view.points, 5)) {
         const [{ x, y }] = await places(page, [point]);
         await page.mouse.move(x, y);
-        await page.locator(".tip", { hasText: `point ${point}` }).waitFor();
-        const rows = await page.locator(".tip tr").evaluateAll((trs) => trs.map((tr) => [tr.children[0].textContent, [...tr.children[1].children].map((div) => div.textContent)]));
+        await page.locator(".frame .tip", { hasText: `point ${point}` }).waitFor();
+        const rows = await page.locator(".frame .tip tr").evaluateAll((trs) => trs.map((tr) => [tr.children[0].textContent, [...tr.children[1].children].map((div) => div.textContent)]));
         for (const field of result.view.fields) {
           const [, texts] = rows.find(([title]) => title === field.name);
           const numbers = texts.flatMap((text) => text.split(", ").map(parseFloat));
@@ -177,7 +177,7 @@ for (const name of ["membrane", "fracture"]) {
         assert.deepEqual(picked.deformed, [0, 1, 2].map((a) => positions[3 * point + a] + u[3 * point + a]));
       }
       await page.mouse.move(5, 5);
-      assert.equal(await page.locator(".tip").isVisible(), false);
+      assert.equal(await page.locator(".frame .tip").isVisible(), false);
     });
 
     test("wheel and drag move the view, reset brings it back", async () => {
