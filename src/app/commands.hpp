@@ -34,6 +34,18 @@ struct NewOptions {
   bool force = false;
 };
 
+struct PlotOptions {
+  std::filesystem::path folder;
+  std::filesystem::path output;  // empty: in the folder
+  std::string field;             // empty: the one that tells most
+  std::string state = "last";    // or "first", "all", a number
+  std::string history;           // columns: a chart of them instead of a field
+  double scale = 1;              // of displacements
+  std::string range;             // "0, 2 MPa"; empty: from the values
+  std::string map;               // of colours; empty: by the values
+  std::string size;              // "1600x1200"; empty: that, without empty margins
+};
+
 enum ExitCode : int { kDone = 0, kMissed = 1, kWrongInput = 2, kFailed = 3, kInterrupted = 130 };
 
 /// Runs a command; an exception becomes one message on standard error and the exit code that belongs to it.
@@ -48,6 +60,8 @@ int cases();
 int verify(const Options& options, bool brief);
 int compare(const CompareOptions& options);
 int schema(bool markdown);
+/// Draws fields or histories of a result.
+int plot(const PlotOptions& options);
 
 /// Folder of the shipped cases.
 std::filesystem::path cases_folder();
@@ -59,5 +73,10 @@ std::filesystem::path find_case(const std::string& target);
 std::filesystem::path default_output(const std::filesystem::path& case_file);
 /// "topic/name" or the file's stem: the name of the case in summaries.
 std::string case_name(const std::filesystem::path& case_file);
+
+/// A word as the shell reads it.
+std::string shell_word(const std::string& word);
+/// A text as the name of a file: what is neither letter, digit nor one of ._-+=, becomes _.
+std::string file_word(const std::string& text);
 
 }  // namespace riven::app

@@ -80,6 +80,7 @@ class CommandLine {
     add("cases", "List the cases that ship with Riven", [] { return cases(); });
     add_verify();
     add_compare();
+    add_plot();
     add_schema();
     add("version", "Print the version", [] {
       fmt::print("riven {}\n", RIVEN_VERSION);
@@ -180,6 +181,25 @@ class CommandLine {
     command.add_flag("--json", to.json, "Print JSON");
   }
 
+  void add_plot() {
+    PlotOptions& to = plot_;
+    CLI::App& command = add("plot", "Draw a result: riven plot DIR", [&to] { return plot(to); });
+    command.add_option("dir", to.folder, "Result folder")->required();
+    command.add_option("-o,--output", to.output,
+                       "Picture: .png, .svg or .pdf (default: in the result folder)");
+    command.add_option("--size", to.size, "Pixels (default: 1600x1200 at most)");
+    CLI::Option* history =
+        command.add_option("--history", to.history, "Chart of columns of history.csv: COLUMN[,COLUMN...]");
+    const auto add_to_field = [&](const char* name, auto& value, const char* doc) {
+      return command.add_option(name, value, doc)->excludes(history);
+    };
+    add_to_field("--field", to.field, "damage, displacement_x, ... (default: what tells most)");
+    add_to_field("--state", to.state, "Number from 0, or from -1 at the end; first, last (default), all");
+    add_to_field("--scale", to.scale, "Of the displacements (default: 1)");
+    add_to_field("--range", to.range, "Values of the first and the last colour: a,b");
+    add_to_field("--map", to.map, "Colours (default: by the values)");
+  }
+
   void add_schema() {
     CLI::App& command =
         add("schema", "Print the JSON Schema of the case format", [this] { return schema(markdown_); });
@@ -191,6 +211,7 @@ class CommandLine {
   Options options_;
   NewOptions new_;
   CompareOptions comparison_;
+  PlotOptions plot_;
   bool brief_ = false, markdown_ = false;
   std::string topic_;  // of help
   int code_ = kDone;
