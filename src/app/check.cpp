@@ -7,6 +7,7 @@
 
 #include "app/commands.hpp"
 #include "base/machine.hpp"
+#include "base/text.hpp"
 #include "input/case_reader.hpp"
 #include "input/case_writer.hpp"
 #include "input/schema.hpp"

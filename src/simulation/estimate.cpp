@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/text.hpp"
 #include "solver/velocity_verlet.hpp"
 
 namespace riven {
@@ -198,25 +199,6 @@ TimeEstimate time_estimate(const Simulation& simulation) {
     estimate.evaluations = kPerPointAlongSide * side / simulation.body->spacing * load_steps(solver);
   }
   return estimate;
-}
-
-std::string bytes_text(double bytes) {
-  if (bytes < 1e9) return fmt::format("{:.0f} MB", std::ceil(1e-6 * bytes));
-  return fmt::format("{:.3g} GB", 1e-9 * bytes);
-}
-
-std::string duration_text(double seconds) {
-  constexpr double kMinute = 60, kHour = 3600, kDay = 86400, kYear = 365 * kDay;
-  if (seconds < 10) return fmt::format("{:.1f} s", seconds);
-  if (seconds < 90) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 90 * kMinute) return fmt::format("{:.0f} min", seconds / kMinute);
-  if (seconds < 2 * kDay) return fmt::format("{:.1f} h", seconds / kHour);
-  if (seconds < 2 * kYear) return fmt::format("{:.0f} days", seconds / kDay);
-  return fmt::format("{:.2g} years", seconds / kYear);
-}
-
-std::string count_text(double count, const std::string& noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
 }  // namespace riven

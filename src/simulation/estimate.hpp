@@ -29,9 +29,4 @@ struct TimeEstimate {
 /// thumb.
 TimeEstimate time_estimate(const Simulation& simulation);
 
-/// "31 MB"; "12 s", "3.5 h", "2.4e+03 years"; "1 thread", "2 threads".
-std::string bytes_text(double bytes);
-std::string duration_text(double seconds);
-std::string count_text(double count, const std::string& noun);
-
 }  // namespace riven

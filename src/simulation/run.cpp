@@ -8,7 +8,9 @@
 #include <new>
 #include <sstream>
 
+#include "base/instruction_set.hpp"
 #include "base/machine.hpp"
+#include "base/text.hpp"
 #include "input/case_writer.hpp"
 #include "simulation/estimate.hpp"
 #include "simulation/interrupt.hpp"

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/machine.hpp"
+#include "base/text.hpp"
 #include "input/case_reader.hpp"
 #include "input_cases.hpp"
 #include "scratch.hpp"
@@ -87,10 +88,19 @@ TEST(Estimate, SaysDurationsInWordsOfTheirSize) {
                                                                                   {1e6, "12 days"},
                                                                                   {1e12, "3.2e+04 years"}})
     EXPECT_EQ(duration_text(seconds), words);
+  EXPECT_EQ(bytes_text(119934), "120 kB");
   EXPECT_EQ(bytes_text(17.2e6), "18 MB");
   EXPECT_EQ(bytes_text(1.234e10), "12.3 GB");
   EXPECT_EQ(count_text(1, "thread"), "1 thread");
   EXPECT_EQ(count_text(16, "thread"), "16 threads");
+  for (const auto& [number, text] :
+       std::vector<std::pair<std::int64_t, std::string>>{{0, "0"},
+                                                         {999, "999"},
+                                                         {-999, "-999"},
+                                                         {1000, "1 000"},
+                                                         {64000, "64 000"},
+                                                         {-1234567, "-1 234 567"}})
+    EXPECT_EQ(grouped(number), text);
 }
 
 }  // namespace
