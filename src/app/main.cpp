@@ -81,6 +81,7 @@ class CommandLine {
     add_verify();
     add_compare();
     add_plot();
+    add_sweep();
     add_schema();
     add("version", "Print the version", [] {
       fmt::print("riven {}\n", RIVEN_VERSION);
@@ -200,6 +201,25 @@ class CommandLine {
     add_to_field("--map", to.map, "Colours (default: by the values)");
   }
 
+  void add_sweep() {
+    SweepOptions& to = sweep_;
+    CLI::App& command = add("sweep", "Run a case with several values of some keys: riven sweep CASE KEY=a,b",
+                            [&to] { return sweep(to); });
+    command.add_option("case", to.target, "Case file, or the name of a shipped case")->required();
+    command.add_option("keys", to.keys, "KEY=a,b,c: as for --set, all combinations are run")->required();
+    command
+        .add_option("--set", to.set, "Override a key of all variants: path.to.key=value (may be repeated)")
+        ->type_size(1)
+        ->allow_extra_args(false);
+    command.add_option("-o,--output", to.output, "Folder of the results (default: results/<case>-sweep)");
+    CLI::Option* force = command.add_flag("--force", to.force, "Replace an existing sweep");
+    command.add_flag("--resume", to.resume, "Go on with a sweep that stopped")->excludes(force);
+    command.add_option("-j,--jobs", to.jobs, "Runs side by side (default: 1)")->check(CLI::Range(1, 1024));
+    command
+        .add_option("--threads", to.threads, "Threads of each run (default: the cores divided among them)")
+        ->check(CLI::Range(1, 1024));
+  }
+
   void add_schema() {
     CLI::App& command =
         add("schema", "Print the JSON Schema of the case format", [this] { return schema(markdown_); });
@@ -212,6 +232,7 @@ class CommandLine {
   NewOptions new_;
   CompareOptions comparison_;
   PlotOptions plot_;
+  SweepOptions sweep_;
   bool brief_ = false, markdown_ = false;
   std::string topic_;  // of help
   int code_ = kDone;

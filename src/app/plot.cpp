@@ -17,17 +17,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::vector<std::string> split_at_commas(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == ',')
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
-}
-
 /// Numbers of the states that are asked for.
 std::vector<std::size_t> chosen_states(const std::string& text, std::size_t count) {
   std::vector<std::size_t> chosen;
