@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 
 #include "base/csv.hpp"
 #include "base/text.hpp"
@@ -94,6 +95,18 @@ Chart chart_over_key(const SweepResults& results, const std::vector<SiValue>& at
   return chart;
 }
 
+/// A variant in a legend: only the last parts of the keys' names, if they differ.
+std::string short_text(const SweepPlan& plan, const SweepVariant& variant) {
+  std::set<std::string> names;
+  std::vector<std::string> parts;
+  for (std::size_t n = 0; n < plan.keys.size(); ++n) {
+    const std::string name = plan.keys[n].name.substr(plan.keys[n].name.rfind('.') + 1);
+    names.insert(name);
+    parts.push_back(fmt::format("{}={}", name, variant.values[n]));
+  }
+  return names.size() == parts.size() ? fmt::format("{}", fmt::join(parts, ", ")) : plan.text(variant);
+}
+
 /// The first column of each history.
 Chart chart_of_histories(const SweepResults& results) {
   const SweepPlan& plan = results.plan;
@@ -106,7 +119,7 @@ Chart chart_of_histories(const SweepResults& results) {
     const auto [y, y_unit] = name_and_unit(history.columns()[1]);
     chart.x = {x, x_unit};
     chart.y = {y, y_unit};
-    chart.series.push_back({plan.text(plan.variants[n]), history.parameter(), history.column(y)});
+    chart.series.push_back({short_text(plan, plan.variants[n]), history.parameter(), history.column(y)});
   }
   return chart;
 }

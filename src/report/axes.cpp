@@ -8,23 +8,6 @@ namespace {
 
 constexpr double kTick = 5, kGap = 4;
 
-/// A text that is no wider than `width` (px): smaller letters first, then fewer.
-void fitted_text(Canvas& canvas, Pixel at, std::string text, double height, double width, bool bold) {
-  constexpr double kSmallest = 0.75;
-  const double wanted = canvas.text_width(text, height, bold);
-  height *= std::clamp(width / std::max(wanted, 1.0), kSmallest, 1.0);
-  bool cut = false;
-  const auto shown = [&] { return cut ? text + "…" : text; };
-  while (!text.empty() && canvas.text_width(shown(), height, bold) > width) {
-    // Not in the middle of a letter of several bytes.
-    do text.pop_back();
-    while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0x80U) != 0 &&
-           (static_cast<unsigned char>(text.back()) & 0x40U) == 0);
-    cut = true;
-  }
-  canvas.text(at, shown(), height, Align::left, bold);
-}
-
 double widest(Canvas& canvas, const Range& range, double length) {
   double width = 0;
   for (const std::string& text : tick_texts(ticks(range, ticks_along(canvas, length))))
@@ -80,10 +63,10 @@ double room_below(const Canvas& canvas) {
 
 void draw_title(Canvas& canvas, const std::string& title, const std::string& below) {
   const double u = canvas.unit(), width = canvas.size().width - 2 * kPadding * u;
-  fitted_text(canvas, {kPadding * u, (kPadding + 0.8 * kTitleHeight) * u}, title, kTitleHeight * u, width,
-              true);
-  fitted_text(canvas, {kPadding * u, (kPadding + kTitleHeight + 1.3 * kTextHeight) * u}, below,
-              kTextHeight * u, width, false);
+  canvas.fitted_text({kPadding * u, (kPadding + 0.8 * kTitleHeight) * u}, title, kTitleHeight * u, width,
+                     true);
+  canvas.fitted_text({kPadding * u, (kPadding + kTitleHeight + 1.3 * kTextHeight) * u}, below,
+                     kTextHeight * u, width);
 }
 
 double title_room(const Canvas& canvas, bool has_below) {

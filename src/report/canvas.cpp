@@ -97,6 +97,20 @@ void Canvas::text(Pixel at, const std::string& text, double height, Align align,
   cairo_new_path(cairo_.get());  // the end of a text would begin the next line
 }
 
+void Canvas::fitted_text(Pixel at, std::string text, double height, double width, bool bold) {
+  constexpr double kSmallest = 0.75;
+  const double wanted = text_width(text, height, bold);
+  height *= std::clamp(width / std::max(wanted, 1.0), kSmallest, 1.0);
+  std::string shown = text;
+  while (!text.empty() && text_width(shown, height, bold) > width) {
+    // Not in the middle of a letter of several bytes.
+    while (text.size() > 1 && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U) text.pop_back();
+    text.pop_back();
+    shown = text + "…";
+  }
+  this->text(at, shown, height, Align::left, bold);
+}
+
 void Canvas::text_upwards(Pixel at, const std::string& text, double height) {
   cairo_save(cairo_.get());
   cairo_translate(cairo_.get(), at.x, at.y);

@@ -51,6 +51,8 @@ class Canvas {
   [[nodiscard]] double unit() const { return unit_; }
 
   void text(Pixel at, const std::string& text, double height, Align align = Align::left, bool bold = false);
+  /// A text no wider than `width`: smaller letters first, then fewer.
+  void fitted_text(Pixel at, std::string text, double height, double width, bool bold = false);
   /// Reading upwards, centred at a place.
   void text_upwards(Pixel at, const std::string& text, double height);
   [[nodiscard]] double text_width(const std::string& text, double height, bool bold = false);
