@@ -41,6 +41,29 @@ struct NewOptions {
   bool force = false;
 };
 
+struct PlotOptions {
+  std::filesystem::path folder;
+  std::filesystem::path output;  // empty: in the folder
+  std::string field;             // empty: the one that tells most
+  std::string state = "last";    // or "first", "all", a number
+  std::string history;           // columns: a chart of them instead of a field
+  double scale = 1;              // of displacements
+  std::string range;             // "0, 2 MPa"; empty: from the values
+  std::string map;               // of colours; empty: by the values
+  std::string size;              // "1600x1200"; empty: that, without empty margins
+};
+
+struct SweepOptions {
+  std::string target;             // case file or the name of a shipped case
+  std::vector<std::string> keys;  // KEY=a,b,c
+  std::vector<std::string> set;   // --set path=value, of all variants
+  std::filesystem::path output;   // -o; empty: the default
+  bool force = false;
+  bool resume = false;
+  int jobs = 1;     // runs side by side
+  int threads = 0;  // of each run; 0: the cores divided among them
+};
+
 enum ExitCode : int { kDone = 0, kMissed = 1, kWrongInput = 2, kFailed = 3, kInterrupted = 130 };
 
 /// Runs a command; an exception becomes one message on standard error and the exit code that belongs to it.
@@ -59,6 +82,10 @@ int schema(bool markdown);
 int report(const ReportOptions& options);
 /// The page of one result, into its folder.
 void write_report(const std::filesystem::path& folder);
+/// Draws fields or histories of a result.
+int plot(const PlotOptions& options);
+/// Runs a case with all combinations of some values.
+int sweep(const SweepOptions& options);
 
 /// Folder of the shipped cases.
 std::filesystem::path cases_folder();
@@ -70,5 +97,12 @@ std::filesystem::path find_case(const std::string& target);
 std::filesystem::path default_output(const std::filesystem::path& case_file);
 /// "topic/name" or the file's stem: the name of the case in summaries.
 std::string case_name(const std::filesystem::path& case_file);
+
+/// A word as the shell reads it.
+std::string shell_word(const std::string& word);
+/// The parts between commas that stand outside of brackets and quotes, without blanks around them.
+std::vector<std::string> split_at_commas(const std::string& text);
+/// A text as the name of a file: what is neither letter, digit nor one of ._-+=, becomes _.
+std::string file_word(const std::string& text);
 
 }  // namespace riven::app

@@ -81,6 +81,8 @@ class CommandLine {
     add_verify();
     add_compare();
     add_report();
+    add_plot();
+    add_sweep();
     add_schema();
     add("version", "Print the version", [] {
       fmt::print("riven {}\n", RIVEN_VERSION);
@@ -191,6 +193,44 @@ class CommandLine {
     command.add_flag("--force", report_.force, "Replace a file that is no report");
   }
 
+  void add_plot() {
+    PlotOptions& to = plot_;
+    CLI::App& command = add("plot", "Draw a result: riven plot DIR", [&to] { return plot(to); });
+    command.add_option("dir", to.folder, "Result folder")->required();
+    command.add_option("-o,--output", to.output,
+                       "Picture: .png, .svg or .pdf (default: in the result folder)");
+    command.add_option("--size", to.size, "Pixels (default: 1600x1200 at most)");
+    CLI::Option* history =
+        command.add_option("--history", to.history, "Chart of columns of history.csv: COLUMN[,COLUMN...]");
+    const auto add_to_field = [&](const char* name, auto& value, const char* doc) {
+      return command.add_option(name, value, doc)->excludes(history);
+    };
+    add_to_field("--field", to.field, "damage, displacement_x, ... (default: what tells most)");
+    add_to_field("--state", to.state, "Number from 0, or from -1 at the end; first, last (default), all");
+    add_to_field("--scale", to.scale, "Of the displacements (default: 1)");
+    add_to_field("--range", to.range, "Values of the first and the last colour: a,b");
+    add_to_field("--map", to.map, "Colours (default: by the values)");
+  }
+
+  void add_sweep() {
+    SweepOptions& to = sweep_;
+    CLI::App& command = add("sweep", "Run a case with several values of some keys: riven sweep CASE KEY=a,b",
+                            [&to] { return sweep(to); });
+    command.add_option("case", to.target, "Case file, or the name of a shipped case")->required();
+    command.add_option("keys", to.keys, "KEY=a,b,c: as for --set, all combinations are run")->required();
+    command
+        .add_option("--set", to.set, "Override a key of all variants: path.to.key=value (may be repeated)")
+        ->type_size(1)
+        ->allow_extra_args(false);
+    command.add_option("-o,--output", to.output, "Folder of the results (default: results/<case>-sweep)");
+    CLI::Option* force = command.add_flag("--force", to.force, "Replace an existing sweep");
+    command.add_flag("--resume", to.resume, "Go on with a sweep that stopped")->excludes(force);
+    command.add_option("-j,--jobs", to.jobs, "Runs side by side (default: 1)")->check(CLI::Range(1, 1024));
+    command
+        .add_option("--threads", to.threads, "Threads of each run (default: the cores divided among them)")
+        ->check(CLI::Range(1, 1024));
+  }
+
   void add_schema() {
     CLI::App& command =
         add("schema", "Print the JSON Schema of the case format", [this] { return schema(markdown_); });
@@ -203,6 +243,8 @@ class CommandLine {
   NewOptions new_;
   ReportOptions report_;
   CompareOptions comparison_;
+  PlotOptions plot_;
+  SweepOptions sweep_;
   bool brief_ = false, markdown_ = false;
   std::string topic_;  // of help
   int code_ = kDone;

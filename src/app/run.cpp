@@ -15,17 +15,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A word as the shell reads it.
-std::string shell_word(const std::string& word) {
-  const bool plain = word.find_first_not_of(
-                         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
-                         "_-./=:,+") == std::string::npos;
-  if (plain && !word.empty()) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 std::string resume_command(const Options& options) {
   std::string command = "riven run " + shell_word(options.target) + " --resume";
   if (!options.output.empty()) command += " -o " + shell_word(options.output.string());

@@ -31,9 +31,9 @@ bool holds_working_folder(const fs::path& folder) {
   return mismatch == folder.end();
 }
 
-/// Descriptor of a folder that other runs respect as long as it is open. Throws InputError when another one
-/// holds it.
-int locked(const fs::path& folder) {
+}  // namespace
+
+int lock_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   // Where the file system knows no locks there are none.
   if (descriptor < 0 || ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
@@ -42,7 +42,7 @@ int locked(const fs::path& folder) {
   throw InputError(fmt::format("{}: a run writes there; wait for its end, or stop it", folder.string()));
 }
 
-void check_free(const fs::path& folder, bool force) {
+void check_free(const fs::path& folder, bool force, const FolderKind& kind) {
   if (!fs::exists(folder)) return;
   const std::string name = folder.string();
   if (!force)
@@ -53,14 +53,17 @@ void check_free(const fs::path& folder, bool force) {
     throw InputError(
         fmt::format("{}: is where Riven runs; --force does not remove it, name another folder", name));
   }
-  if (!fs::is_empty(folder) && !is_result(folder)) {
+  if (!fs::is_empty(folder) && !kind.is(folder)) {
     throw InputError(
-        fmt::format("{}: is not a result of Riven (it has no case.toml and resolved.toml); --force does not "
-                    "remove it, name another folder",
-                    name));
+        fmt::format("{}: is not {} (it has no {}); --force does not remove it, name another folder", name,
+                    kind.what, kind.marks));
   }
-  if (const int descriptor = locked(folder); descriptor >= 0) ::close(descriptor);
+  if (const int descriptor = lock_folder(folder); descriptor >= 0) ::close(descriptor);
 }
+
+namespace {
+
+const FolderKind kResult{"a result of Riven", "case.toml and resolved.toml", is_result};
 
 /// A hidden place for `target` in the nearest folder that exists, so that a failure leaves no parents behind
 /// and the move into place is a rename within one disk.
@@ -119,12 +122,12 @@ ResultFolder ResultFolder::create(const fs::path& path, bool force) {
     folder.target_ = fs::weakly_canonical(fs::absolute(path / ""));
     if (!folder.target_.has_filename()) folder.target_ = folder.target_.parent_path();
     folder.force_ = force;
-    check_free(folder.target_, force);
+    check_free(folder.target_, force, kResult);
     remove_leftovers(folder.target_);
     folder.current_ = hidden_beside(folder.target_, std::to_string(::getpid()));
     fs::remove_all(folder.current_);  // of a killed run whose process id came round again
     fs::create_directories(folder.current_ / "fields");
-    folder.lock_ = locked(folder.current_);
+    folder.lock_ = lock_folder(folder.current_);
   } catch (const fs::filesystem_error& error) {
     throw InputError(
         fmt::format("{}: cannot create a result folder there: {}", path.string(), error.code().message()));
@@ -148,7 +151,7 @@ ResultFolder ResultFolder::open(const fs::path& path) {
 
 ResultFolder ResultFolder::go_on(const fs::path& path) {
   ResultFolder folder = open(path);
-  folder.lock_ = locked(folder.current_);
+  folder.lock_ = lock_folder(folder.current_);
   return folder;
 }
 
@@ -169,7 +172,7 @@ ResultFolder::~ResultFolder() {
 void ResultFolder::publish(const std::string& case_text, const std::string& resolved_text) {
   write_text(case_file(), case_text);
   write_text(resolved(), resolved_text);
-  check_free(target_, force_);
+  check_free(target_, force_, kResult);
   std::error_code problem;
   fs::create_directories(target_.parent_path(), problem);  // what failed here shows in the rename
   move_folder(current_, target_);

@@ -2,8 +2,23 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace riven {
+
+/// Folders that `--force` replaces: others may hold what Riven did not write.
+struct FolderKind {
+  std::string_view what;   // "a result of Riven"
+  std::string_view marks;  // the files that tell
+  bool (*is)(const std::filesystem::path& folder);
+};
+
+/// Throws InputError when `folder` exists and is not to be replaced, or not of this kind, or in use.
+void check_free(const std::filesystem::path& folder, bool force, const FolderKind& kind);
+
+/// Descriptor of a folder that other runs respect as long as it is open. Throws InputError when another one
+/// holds it.
+int lock_folder(const std::filesystem::path& folder);
 
 /// The folder of a run. It is prepared as a hidden folder beside its place and takes its name by `publish`,
 /// when the run is about to start: whatever fails before leaves nothing behind, and an older result
