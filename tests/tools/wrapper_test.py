@@ -119,6 +119,16 @@ class Wrapper(unittest.TestCase):
         self.assertEqual(passed.returncode, 0, passed.stderr)
         self.assertTrue(passed.stdout.rstrip().splitlines()[-1].startswith("Total Test time"), passed.stdout)
 
+    def test_brings_the_packages_of_the_report_page_once(self):
+        (self.toy / "web/package-lock.json").write_text("{}")
+        stubs = self.with_stubs(user="0")
+        write_program(self.top / "stubs/npm", 'echo "npm $*" >>"$TOY_NOTES"; mkdir -p "$3/node_modules"; '
+                                              'touch "$3/node_modules/.package-lock.json"')
+        for _ in range(2):
+            self.assertIn("Total Test time", self.riven("test", "-R", "toy$", **stubs).stdout)
+        self.assertEqual((self.top / "notes").read_text(),
+                         f"npm ci --prefix {self.toy}/web --no-audit --no-fund\n")
+
     def test_without_root_names_the_missing_packages(self):
         (self.toy / "packages.txt").write_text("build: dpkg riven-no-such-b\nbuild: riven-no-such-a\ntest: riven-t\n")
         stubs = self.with_stubs(user="1000")
