@@ -65,6 +65,18 @@ class Results(ProgramTest):
         said = self.command("check", case, "--set", "solver.stretch=[1.1]").stdout
         self.assertIn("# 2 expectations are at states that this run does not reach; they are left out\n", said)
 
+    def test_a_field_is_expected_at_those_of_its_states_that_are_reached(self):
+        points = "lambda,X_m,Y_m,ux_m,uy_m\n" + "".join(f"{s},0.05,0.05,{(s - 1) * 0.05},{(s - 1) * 0.05}\n"
+                                                       for s in (1.1, 1.2, 1.4))
+        self.write("points.csv", points)
+        case = self.write("sheet.toml", PLAIN + '\n[[expect]]\nfield = "displacement"\nfile = "points.csv"\n'
+                          'tolerance = "1 %"\nkind = "reference"\n')
+        # 1.2 lies on the way, 1.4 beyond the end.
+        run = self.command("run", case, "-o", "some", "--set", "solver.stretch=[1.1,1.3]")
+        self.assertIn("2 expectations are at states that this run does not reach; they are left out\n", run.stderr)
+        said = self.command("verify", case, "--set", "solver.stretch=[1.1,1.3]").stdout
+        self.assertEqual(re.findall(r"displacement field +(\S+)", said), ["1.1"], said)
+
     def test_history_and_fields(self):
         self.command("run", self.write("hole.toml", HOLE), "-o", "out")
         columns, rows = history(self.top / "out")
