@@ -193,7 +193,7 @@ void tell_end(const Summary& summary, const Recorder& recorder, const Simulation
                        name(summary.status), summary.timing.wall_s, recorder.evaluations(),
                        1e-6 * summary.timing.bond_evaluations_per_second, balance));
   if (summary.status == RunStatus::finished)
-    log.info(fmt::format("results: {}/ (fields.pvd opens in ParaView; history.csv, energy.csv, summary.json)",
+    log.info(fmt::format("results: {}/ (fields.pvd opens in ParaView; history.csv, summary.json)",
                          options.folder.string()));
 }
 

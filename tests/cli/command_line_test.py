@@ -166,7 +166,7 @@ class Words(ProgramTest):
 
     def test_words_that_are_none(self):
         for words, message in {
-                ("rnu",): 'rnu: unknown command; expected one of new, run, check, cases, verify, compare, schema, version, help; '
+                ("rnu",): 'rnu: unknown command; expected one of new, run, check, cases, verify, compare, report, schema, version, help; '
                           'did you mean "run"?',
                 ("sheet.toml",): 'did you mean "riven run sheet.toml"?',
                 ("help", "rnu"): 'did you mean "run"?',

@@ -348,6 +348,7 @@ class Files(ReportTest):
         self.page("mine.html")
         self.assertIn("is a folder", self.refused("report", "out", "-o", "out"))
         self.assertIn("there is no folder", self.refused("report", "out", "-o", "none/page.html"))
+        self.assertIn("cannot write /proc/page.html", self.refused("report", "out", "-o", "/proc/page.html", expect=3))
         self.command("run", "sheet.toml", "-o", "out", "--force", "--report")
         # At the end of a run, too.
         self.command("run", "sheet.toml", "-o", "out", "--resume", "--report")
