@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "input/case.hpp"
@@ -18,9 +20,10 @@ struct Verdict {
   bool published = false;
   bool decides = true;             // a reference; published values are only reported
   std::optional<double> expected;  // none for a field
-  double ours = 0;                 // the metric; for a field the relative L2 deviation
-  double deviation = 0;            // relative to the expected value, if that is not 0
-  std::string limit;               // what was asked: "0.5 %", ">= 2"
+  std::optional<double> ours;      // the metric; none for a field
+  std::optional<double>
+      deviation;      // from the expected value, relative if that is not 0; of a field relative L2
+  std::string limit;  // what was asked: "0.5 %", ">= 2"
   bool met = true;
   std::string source;
 };
@@ -30,8 +33,17 @@ struct Verdict {
 std::vector<Verdict> judge(const Case& input, const std::vector<ExpectInput>& expects,
                            const std::filesystem::path& folder);
 
+/// How a verdict reads in a table: "ok", "missed", or "reported" where it does not decide.
+std::string_view outcome(const Verdict& verdict);
+
 /// What a comparison with this case's results must know of its geometry.
 CompareSettings compare_settings(const Case& input, double exclude_within);
+
+/// A verdict as a row of a table under these headings.
+inline constexpr std::array<std::string_view, 8> kVerdictColumns = {
+    "metric", "at", "published", "reference", "ours", "deviation", "limit", ""};
+using VerdictCells = std::array<std::string, kVerdictColumns.size()>;
+VerdictCells cells(const Verdict& verdict);
 
 /// The table published / reference / ours / deviation of one case, one line per metric and state.
 std::string table(const std::vector<Verdict>& verdicts);
