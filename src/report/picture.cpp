@@ -144,12 +144,13 @@ Range typical_range(const Scalar& scalar) {
   std::vector<double> values = scalar.values;
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
   if (!scalar.unit.empty() && !values.empty()) {
-    const auto at = [&](double part) {
-      const auto place = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+    const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;
+    const auto cut = static_cast<std::ptrdiff_t>(kOutermost * static_cast<double>(last));
+    const auto at = [&](std::ptrdiff_t place) {
       std::nth_element(values.begin(), values.begin() + place, values.end());
       return values[static_cast<std::size_t>(place)];
     };
-    const Range most{at(kOutermost), at(1 - kOutermost)};
+    const Range most{at(cut), at(last - cut)};
     if (most.width() > 0 && most.width() < kFar * whole.width()) return most;
   }
   return whole;
