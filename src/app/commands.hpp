@@ -53,6 +53,11 @@ struct PlotOptions {
   std::string size;              // "1600x1200"; empty: that, without empty margins
 };
 
+struct VerifyOptions {
+  bool brief = false;    // run the [short] variants
+  bool gallery = false;  // write a page that shows all cases
+};
+
 struct SweepOptions {
   std::string target;             // case file or the name of a shipped case
   std::vector<std::string> keys;  // KEY=a,b,c
@@ -74,8 +79,7 @@ int new_case(const NewOptions& options);
 int run(const Options& options);
 int check(const Options& options);
 int cases();
-/// `brief`: run the [short] variants.
-int verify(const Options& options, bool brief);
+int verify(const Options& options, const VerifyOptions& how);
 int compare(const CompareOptions& options);
 int schema(bool markdown);
 /// Writes the page of results.

@@ -162,10 +162,12 @@ class CommandLine {
 
   void add_verify() {
     CLI::App& command = add("verify", "Run shipped cases and hold them against their references",
-                            [this] { return verify(options_, brief_); });
+                            [this] { return verify(options_, verification_); });
     add_case(command, "Topic or case (default: all)");
     command.add_flag("--force", options_.force, "Replace results of riven run too");
-    command.add_flag("--short", brief_, "Run the short variants of cases that have one");
+    command.add_flag("--short", verification_.brief, "Run the short variants of cases that have one");
+    command.add_flag("--report", verification_.gallery,
+                     "Write results/gallery.html, a page that shows all cases");
   }
 
   void add_compare() {
@@ -245,7 +247,8 @@ class CommandLine {
   CompareOptions comparison_;
   PlotOptions plot_;
   SweepOptions sweep_;
-  bool brief_ = false, markdown_ = false;
+  VerifyOptions verification_;
+  bool markdown_ = false;
   std::string topic_;  // of help
   int code_ = kDone;
 };

@@ -56,11 +56,6 @@ Range read_range(const std::string& text, const Scalar& scalar) {
   return range;
 }
 
-std::string state_text(const Result& result, double value) {
-  return result.parameter() == Parameter::time ? "t = " + readable(value, "s")
-                                               : fmt::format("{} {:.6g}", name(result.parameter()), value);
-}
-
 /// One of several pictures: "film.png" -> "film-0003.png".
 fs::path numbered(const fs::path& path, std::size_t number) {
   fs::path file = path.stem();
@@ -116,7 +111,7 @@ int plot_fields(const PlotOptions& options, const Result& result) {
   const fs::path base = options.output.empty() ? options.folder / (field + ".png") : options.output;
   for (const std::size_t n : states) {
     const PointCloud cloud = read_vtu(result.states[n].file);
-    settings.state = state_text(result, result.states[n].value);
+    settings.state = state_text(result, n);
     const fs::path path = single && !options.output.empty() ? base : numbered(base, n);
     tell(path, draw_field(cloud, scalar_of(cloud, field), settings, path));
   }

@@ -127,7 +127,7 @@ SweptKey swept_key(const std::string& text) {
   return key;
 }
 
-std::optional<SiValue> si_value(const Case& input, const std::string& key) {
+std::optional<SiValue> value_in_si(const Case& input, const std::string& key) {
   // The user counts entries of lists from 1, the resolved case from 0.
   std::string path, name;
   for (std::istringstream names(key); std::getline(names, name, '.');) {
@@ -165,7 +165,7 @@ SweepPlan plan_sweep(const SweepOptions& options) {
   std::vector<double> needs;
   for_each_checked(plan, [&](SweepVariant& variant) {
     const Case input = case_of(plan.file, variant);
-    for (const SweptKey& key : plan.keys) variant.si.push_back(si_value(input, key.name));
+    for (const SweptKey& key : plan.keys) variant.si.push_back(value_in_si(input, key.name));
     needs.push_back(memory_estimate(input));
   });
   check_side_by_side(std::move(needs), static_cast<std::size_t>(options.jobs));

@@ -27,7 +27,7 @@ struct SiValue {
 };
 
 /// What a key of a case reads after all units and formulas are resolved; nothing if it is no single number.
-std::optional<SiValue> si_value(const Case& input, const std::string& key);
+std::optional<SiValue> value_in_si(const Case& input, const std::string& key);
 
 /// One combination of values.
 struct SweepVariant {

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "app/commands.hpp"
+#include "app/gallery.hpp"
 #include "base/error.hpp"
 #include "input/case_reader.hpp"
 #include "output/atomic_file.hpp"
@@ -78,48 +79,78 @@ bool may_replace(const fs::path& file, const fs::path& folder, const Options& op
   return options.force || is_shipped(file) || fs::exists(folder / kVerification);
 }
 
-/// Runs one case and prints its table. Returns its exit code.
-int verify_case(const fs::path& file, const Options& options, bool brief) {
+/// Runs one case and prints its table.
+void verify_case(const fs::path& file, const Options& options, bool brief, Verification& found) {
   const Variant variant = make_variant(file, options, brief);
-  const fs::path folder = default_output(file);
-  const Summary summary =
-      run_case(variant.input,
-               {.folder = folder, .force = may_replace(file, folder, options), .case_name = case_name(file)});
-  if (summary.status == RunStatus::interrupted) return kInterrupted;
+  found.title = variant.input.title;
+  found.brief = variant.brief;
+  found.unreached = variant.unreached;
+  const Summary summary = run_case(
+      variant.input,
+      {.folder = found.folder, .force = may_replace(file, found.folder, options), .case_name = found.name});
+  found.summary = summary;
+  found.code = summary.status == RunStatus::interrupted ? kInterrupted : kFailed;
+  if (summary.status == RunStatus::interrupted) return;
   if (summary.status == RunStatus::failed) {
-    tell(folder,
-         fmt::format("{}: the run failed; see {}\n", case_name(file), (folder / "riven.log").string()));
-    return kFailed;
+    found.problem = fmt::format("the run failed; see {}", (found.folder / "riven.log").string());
+    return tell(found.folder, fmt::format("{}: {}\n", found.name, found.problem));
   }
-  std::vector<Verdict> verdicts = judge(variant.input, variant.input.expects, folder);
+  found.verdicts = judge(variant.input, variant.input.expects, found.folder);
   // With overrides the expectations of the full case say nothing that could decide.
   if (!options.set.empty())
-    for (Verdict& verdict : verdicts) verdict.decides = false;
-  tell(folder, verdicts_text(file, variant, verdicts));
-  const bool met =
-      std::all_of(verdicts.begin(), verdicts.end(), [](const Verdict& v) { return v.met || !v.decides; });
-  return met ? kDone : kMissed;
+    for (Verdict& verdict : found.verdicts) verdict.decides = false;
+  tell(found.folder, verdicts_text(file, variant, found.verdicts));
+  const bool met = std::all_of(found.verdicts.begin(), found.verdicts.end(),
+                               [](const Verdict& v) { return v.met || !v.decides; });
+  found.code = met ? kDone : kMissed;
+}
+
+/// A case that is wrong or fails must not keep the others from being looked at.
+Verification verify_guarded(const fs::path& file, const Options& options, bool brief) {
+  Verification found{.name = case_name(file), .folder = default_output(file)};
+  found.code = guarded([&] {
+    try {
+      verify_case(file, options, brief, found);
+    } catch (const std::exception& problem) {
+      found.problem = problem.what();
+      throw;
+    }
+    return found.code;
+  });
+  return found;
+}
+
+std::string conclusion(const std::vector<Verification>& all, bool decides) {
+  const auto count = [&](int code) {
+    return std::count_if(all.begin(), all.end(), [&](const Verification& each) { return each.code == code; });
+  };
+  const auto met = count(kDone), missed = count(kMissed);
+  const auto failed = static_cast<std::ptrdiff_t>(all.size()) - met - missed;
+  if (decides)
+    return fmt::format("{} of {} cases meet their references, {} missed, {} failed", met, all.size(), missed,
+                       failed);
+  return fmt::format("{} of {} cases run with --set: deviations are reported and decide nothing, {} failed",
+                     met, all.size(), failed);
 }
 
 }  // namespace
 
-int verify(const Options& options, bool brief) {
+int verify(const Options& options, const VerifyOptions& how) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
+  std::vector<Verification> all;
   int worst = kDone;
-  int missed = 0, failed = 0, met = 0;
   for (const fs::path& file : targets(options.target)) {
-    // A case that is wrong or fails must not keep the others from being looked at.
-    const int code = guarded([&] { return verify_case(file, options, brief); });
-    if (code == kInterrupted) return code;
-    worst = std::max(worst, code);
-    ++(code == kDone ? met : code == kMissed ? missed : failed);
+    all.push_back(verify_guarded(file, options, how.brief));
+    if (all.back().code == kInterrupted) return kInterrupted;
+    worst = std::max(worst, all.back().code);
   }
-  const int all = met + missed + failed;
-  if (options.set.empty()) {
-    fmt::print("{} of {} cases meet their references, {} missed, {} failed\n", met, all, missed, failed);
-  } else {
-    fmt::print("{} of {} cases run with --set: deviations are reported and decide nothing, {} failed\n", met,
-               all, failed);
+  const std::string text = conclusion(all, options.set.empty());
+  fmt::print("{}\n", text);
+  if (how.gallery) {
+    const fs::path file = "results/gallery.html";
+    fs::create_directories(file.parent_path());
+    write_gallery(file, all, text);
+    fmt::print(stderr, "gallery: {}\n", file.string());
   }
   return worst;
 }

@@ -1,6 +1,7 @@
 #include "report/picture.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -108,6 +109,7 @@ struct Shown {
   Frame frame;   // m
   ReadableUnit unit;
   const PictureSettings& settings;
+  std::string subtitle;
 
   [[nodiscard]] Colour colour(std::size_t i) const {
     return map.at((scalar.values[i] - values.low) / values.width());
@@ -142,18 +144,44 @@ Range typical_range(const Scalar& scalar) {
   std::vector<double> values = scalar.values;
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
   if (!scalar.unit.empty() && !values.empty()) {
-    const auto at = [&](double part) {
-      const auto place = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+    const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;
+    const auto cut = static_cast<std::ptrdiff_t>(kOutermost * static_cast<double>(last));
+    const auto at = [&](std::ptrdiff_t place) {
       std::nth_element(values.begin(), values.begin() + place, values.end());
       return values[static_cast<std::size_t>(place)];
     };
-    const Range most{at(kOutermost), at(1 - kOutermost)};
+    const Range most{at(cut), at(last - cut)};
     if (most.width() > 0 && most.width() < kFar * whole.width()) return most;
   }
   return whole;
 }
 
-Shown decide(const Scene& scene, const Scalar& scalar, const PictureSettings& settings) {
+/// "40 x 40 x 20 mm": the undeformed body with its outermost cells.
+std::string size_text(const PointCloud& cloud, const Scene& scene) {
+  std::array<Range, 3> extent;
+  double spacing = 0;
+  for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
+    spacing = std::max(spacing, scene.cells.shapes[i].spacing);
+    for (std::size_t a = 0; a < 3; ++a) extent[a].include(cloud.positions[i][a]);
+  }
+  std::array<double, 3> size{};
+  for (std::size_t a = 0; a < 3; ++a) size[a] = extent[a].width() + spacing;
+  const ReadableUnit in = readable_unit("m", *std::max_element(size.begin(), size.end()));
+  return fmt::format("{:.4g} × {:.4g} × {:.4g} {}", in.factor * size[0], in.factor * size[1],
+                     in.factor * size[2], in.unit);
+}
+
+/// What stands under the title.
+std::string subtitle(const PointCloud& cloud, const Scene& scene, const PictureSettings& settings) {
+  std::vector<std::string> parts;
+  if (!settings.state.empty()) parts.push_back(settings.state);
+  if (settings.scale != 1) parts.push_back(fmt::format("displacements × {:g}", settings.scale));
+  if (scene.projection.dimension() == 3) parts.push_back("body of " + size_text(cloud, scene));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+Shown decide(const PointCloud& cloud, const Scene& scene, const Scalar& scalar,
+             const PictureSettings& settings) {
   const Range shown = settings.values.empty() ? colour_range(scalar) : settings.values;
   const ColourMap& map = settings.map != nullptr ? *settings.map
                          : of_both_signs(shown)  ? colour_map("purple-orange")
@@ -165,7 +193,13 @@ Shown decide(const Scene& scene, const Scalar& scalar, const PictureSettings& se
                                                    : std::min(frame.across.width(), frame.up.width()));
   frame = {widened(frame.across, margin), widened(frame.up, margin)};
   const double largest = std::max(std::abs(shown.low), std::abs(shown.high));
-  return {scalar, map, shown, frame, readable_unit(scalar.unit, largest), settings};
+  return {scalar,
+          map,
+          shown,
+          frame,
+          readable_unit(scalar.unit, largest),
+          settings,
+          subtitle(cloud, scene, settings)};
 }
 
 // The colour bar (canvas units): its thickness, its gap to the axes, and to its numbers.
@@ -184,7 +218,8 @@ double bar_room(Canvas& canvas, const Shown& shown, bool below) {
   const double u = canvas.unit();
   if (below) return (kBarGap + kBar + kNumberGap + 2.6 * kTextHeight) * u;
   double widest = 0;
-  for (const std::string& text : tick_texts(ticks(shown.scaled_values(), 8)))
+  for (const std::string& text :
+       tick_texts(ticks(shown.scaled_values(), ticks_along(canvas, canvas.size().height))))
     widest = std::max(widest, canvas.text_width(text, kTextHeight * u));
   return widest + (kBarGap + kBar + 2 * kNumberGap + 1.3 * kTextHeight) * u;
 }
@@ -192,7 +227,7 @@ double bar_room(Canvas& canvas, const Shown& shown, bool below) {
 /// The largest frame of equal scales that fits, in the middle of the room it has.
 Layout arrange(const Shown& shown, bool has_axes, const std::filesystem::path& path) {
   const PictureSettings& settings = shown.settings;
-  Layout layout{.size = settings.size, .unit = unit_of(settings.size)};
+  Layout layout{.size = settings.size, .unit = settings.text * unit_of(settings.size)};
   Canvas canvas(settings.size, layout.unit, path);  // measures texts
   const double padding = kPadding * layout.unit;
   const double aspect = shown.frame.across.width() / shown.frame.up.width();
@@ -207,7 +242,7 @@ Layout arrange(const Shown& shown, bool has_axes, const std::filesystem::path& p
   axes.y = {metres.factor * shown.frame.up.low, metres.factor * shown.frame.up.high};
   axes.x_label = axes.y_label = metres.unit;
 
-  const double top = title_room(canvas, true);
+  const double top = title_room(canvas, !shown.subtitle.empty());
   const double left = padding + (has_axes ? room_left(canvas, axes.y, settings.size.height) : 0);
   const double right = padding + (layout.bar_below ? 0 : bar_room(canvas, shown, false));
   const double bottom =
@@ -368,43 +403,26 @@ void draw_triad(Canvas& canvas, const Projection& projection, Pixel corner) {
   }
 }
 
-/// "40 x 40 x 20 mm": the undeformed body with its outermost cells.
-std::string size_text(const PointCloud& cloud, const Scene& scene) {
-  std::array<Range, 3> extent;
-  double spacing = 0;
-  for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
-    spacing = std::max(spacing, scene.cells.shapes[i].spacing);
-    for (std::size_t a = 0; a < 3; ++a) extent[a].include(cloud.positions[i][a]);
-  }
-  std::array<double, 3> size{};
-  for (std::size_t a = 0; a < 3; ++a) size[a] = extent[a].width() + spacing;
-  const ReadableUnit in = readable_unit("m", *std::max_element(size.begin(), size.end()));
-  return fmt::format("{:.4g} × {:.4g} × {:.4g} {}", in.factor * size[0], in.factor * size[1],
-                     in.factor * size[2], in.unit);
-}
-
-std::string subtitle(const PictureSettings& settings) {
-  if (settings.scale == 1) return settings.state;
-  return fmt::format("{}, displacements × {:g}", settings.state, settings.scale);
-}
-
 /// A body in one dimension: the field over the place.
 std::string draw_curve(const PointCloud& cloud, const Scene& scene, const Shown& shown,
                        const std::filesystem::path& path) {
   const PictureSettings& settings = shown.settings;
-  Canvas canvas(settings.size, unit_of(settings.size), path);
+  Canvas canvas(settings.size, settings.text * unit_of(settings.size), path);
   const double u = canvas.unit(), padding = kPadding * u;
   const Range colours = shown.scaled_values(), values = widened(colours, kMargin * colours.width());
   const ReadableUnit metres =
       readable_unit("m", std::max(std::abs(shown.frame.across.low), std::abs(shown.frame.across.high)));
-  Axes axes{.corner = {0, title_room(canvas, true)}, .y = values, .y_label = shown.label(), .grid = true};
+  Axes axes{.corner = {0, title_room(canvas, !shown.subtitle.empty())},
+            .y = values,
+            .y_label = shown.label(),
+            .grid = true};
   axes.x = {metres.factor * shown.frame.across.low, metres.factor * shown.frame.across.high};
   axes.x_label = metres.label(std::string(1, "xyz"[scene.projection.axes()[0]]));
   axes.height = settings.size.height - axes.corner.y - room_below(canvas) - padding;
   axes.corner.x = padding + room_left(canvas, axes.y, axes.height);
   axes.width = settings.size.width - axes.corner.x - 2 * padding;
   axes.draw(canvas);
-  draw_title(canvas, settings.title, subtitle(settings));
+  draw_title(canvas, settings.title, shown.subtitle);
 
   std::vector<std::size_t> order(cloud.positions.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -450,14 +468,12 @@ Range colour_range(const Scalar& scalar) {
 std::string draw_field(const PointCloud& cloud, const Scalar& scalar, const PictureSettings& settings,
                        const std::filesystem::path& path) {
   const Scene scene(cloud, settings.scale);
-  const Shown shown = decide(scene, scalar, settings);
+  const Shown shown = decide(cloud, scene, scalar, settings);
   if (scene.projection.dimension() == 1) return draw_curve(cloud, scene, shown, path);
   const bool has_axes = scene.projection.dimension() == 2;
   Layout layout = arrange(shown, has_axes, path);
   Canvas canvas(layout.size, layout.unit, path);
-  const std::string below = subtitle(settings);
-  draw_title(canvas, settings.title,
-             has_axes ? below : fmt::format("{}; body of {}", below, size_text(cloud, scene)));
+  draw_title(canvas, settings.title, shown.subtitle);
   Axes& axes = layout.axes;
   canvas.image(axes.corner, std::round(axes.width), std::round(axes.height),
                draw_points(scene, shown, layout));
@@ -474,6 +490,12 @@ std::string draw_field(const PointCloud& cloud, const Scalar& scalar, const Pict
     draw_bar_beside(canvas, layout, shown);
   }
   return canvas.finish();
+}
+
+std::string state_text(const Result& result, std::size_t state) {
+  const double value = result.states[state].value;
+  return result.parameter() == Parameter::time ? "t = " + readable(value, "s")
+                                               : fmt::format("{} {:.6g}", name(result.parameter()), value);
 }
 
 std::string telling_field(const PointCloud& state, const PointCloud& first) {

@@ -25,6 +25,7 @@ struct PictureSettings {
   Range values;                    // of the colours; empty: `colour_range`
   Frame frame;                     // empty: as large as the body
   double scale = 1;                // of the displacements that are shown
+  double text = 1;                 // of the usual size of text
   std::string title, state;        // "Sheet with a hole", "stretch 3"
 };
 
@@ -40,6 +41,9 @@ Range colour_range(const Scalar& scalar);
 /// above a corner, in one as a curve over the place. Returns the file; its kind is that of `path`'s ending.
 std::string draw_field(const PointCloud& cloud, const Scalar& scalar, const PictureSettings& settings,
                        const std::filesystem::path& path);
+
+/// "stretch 3", "t = 1.2 ms"
+std::string state_text(const Result& result, std::size_t state);
 
 /// The field that tells most about a state: damage where it has grown since the first state, else the first
 /// there is of strain energy density, stress and displacement. Throws InputError when there are no fields.

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -140,22 +140,28 @@ std::string_view outcome(const Verdict& verdict) {
   return !verdict.decides ? "reported" : verdict.met ? "ok" : "missed";
 }
 
+VerdictCells cells(const Verdict& v) {
+  const std::string expected = v.expected ? fmt::format("{:.6g}", *v.expected) : v.ours ? "-" : "";
+  return {v.unit.empty() ? v.what : v.what + " [" + v.unit + "]",
+          fmt::format("{:.6g}", v.at),
+          v.published ? expected : "",
+          v.published ? "" : expected,
+          v.ours ? fmt::format("{:.6g}", *v.ours) : "",
+          v.deviation ? percent(*v.deviation) : "",
+          v.limit,
+          outcome(v) == "missed" ? "MISSED" : std::string(outcome(v))};
+}
+
 std::string table(const std::vector<Verdict>& verdicts) {
-  constexpr std::size_t kColumns = 8;
-  using Row = std::array<std::string, kColumns>;
-  std::vector<Row> rows{{"metric", "at", "published", "reference", "ours", "deviation", "limit", ""}};
-  for (const Verdict& v : verdicts) {
-    const std::string expected = v.expected ? fmt::format("{:.6g}", *v.expected) : v.ours ? "-" : "";
-    rows.push_back({v.unit.empty() ? v.what : v.what + " [" + v.unit + "]", fmt::format("{:.6g}", v.at),
-                    v.published ? expected : "", v.published ? "" : expected,
-                    v.ours ? fmt::format("{:.6g}", *v.ours) : "", v.deviation ? percent(*v.deviation) : "",
-                    v.limit, outcome(v) == "missed" ? "MISSED" : std::string(outcome(v))});
-  }
+  constexpr std::size_t kColumns = kVerdictColumns.size();
+  std::vector<VerdictCells> rows(1);
+  std::copy(kVerdictColumns.begin(), kVerdictColumns.end(), rows.front().begin());
+  for (const Verdict& verdict : verdicts) rows.push_back(cells(verdict));
   std::array<std::size_t, kColumns> width{};
-  for (const Row& row : rows)
+  for (const VerdictCells& row : rows)
     for (std::size_t c = 0; c < kColumns; ++c) width[c] = std::max(width[c], row[c].size());
   std::string text;
-  for (const Row& row : rows) {
+  for (const VerdictCells& row : rows) {
     text += fmt::format("  {:<{}}", row[0], width[0]);
     for (std::size_t c = 1; c + 1 < kColumns; ++c) text += fmt::format("  {:>{}}", row[c], width[c]);
     text += row.back().empty() ? "\n" : fmt::format("  {}\n", row.back());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -37,6 +38,12 @@ std::string_view outcome(const Verdict& verdict);
 
 /// What a comparison with this case's results must know of its geometry.
 CompareSettings compare_settings(const Case& input, double exclude_within);
+
+/// A verdict as a row of a table under these headings.
+inline constexpr std::array<std::string_view, 8> kVerdictColumns = {
+    "metric", "at", "published", "reference", "ours", "deviation", "limit", ""};
+using VerdictCells = std::array<std::string, kVerdictColumns.size()>;
+VerdictCells cells(const Verdict& verdict);
 
 /// The table published / reference / ours / deviation of one case, one line per metric and state.
 std::string table(const std::vector<Verdict>& verdicts);

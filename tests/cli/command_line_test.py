@@ -9,7 +9,7 @@ import unittest
 from program import HOLE, MOVING, PLAIN, PROGRAM, ROOT, ProgramTest, replaced
 
 CASES = sorted((ROOT / "cases").rglob("*.toml"), key=lambda path: path.with_suffix(""))
-COMMANDS = ["new", "run", "check", "cases", "verify", "compare", "schema", "version", "help"]
+COMMANDS = ["new", "run", "check", "cases", "verify", "compare", "plot", "sweep", "schema", "version", "help"]
 
 
 def mistakes(schema, value, path=""):
@@ -166,8 +166,7 @@ class Words(ProgramTest):
 
     def test_words_that_are_none(self):
         for words, message in {
-                ("rnu",): 'rnu: unknown command; expected one of new, run, check, cases, verify, compare, report, schema, version, help; '
-                          'did you mean "run"?',
+                ("rnu",): f'rnu: unknown command; expected one of {", ".join(COMMANDS)}; did you mean "run"?',
                 ("sheet.toml",): 'did you mean "riven run sheet.toml"?',
                 ("help", "rnu"): 'did you mean "run"?',
                 ("run",): 'case is required; "riven run --help" shows what is expected',
