@@ -18,7 +18,7 @@ function table(head: string[], rows: Cell[][], label: string): HTMLElement {
 const allNames = (lists: string[][]): string[] => [...new Set(lists.flat())];
 
 /** A column for each result; over a single one there is no need to say whose it is. */
-const resultColumns = (results: ResultData[], single: string): string[] => (results.length > 1 ? results.map((r) => r.name) : [single]);
+const resultColumns = (results: ResultData[], single: string): string[] => (results.length > 1 ? results.map((r) => r.label) : [single]);
 
 export function metricsTable(results: ResultData[]): HTMLElement {
   const names = allNames(results.map((r) => r.metrics.map((m) => m.name)));
@@ -70,7 +70,7 @@ export function verdictTable(results: ResultData[]): HTMLElement {
   const some = results.filter((r) => r.verdicts.length > 0);
   if (some.length === 0) return h("p", { class: "quiet" }, "The case expects nothing: there is no published or reference value to compare with.");
   const keys = allNames(some.map((r) => r.verdicts.map(sameVerdict)));
-  const ours = some.flatMap(({ name }) => [results.length > 1 ? `ours: ${name}` : "ours", "deviation", "verdict"]);
+  const ours = some.flatMap((r) => [results.length > 1 ? `ours: ${r.label}` : "ours", "deviation", "verdict"]);
   const head = ["what", "at", "published", "reference", ...ours, "limit", "source"];
   return h("div", { class: "verdicts" }, table(head, keys.map((key) => verdictRow(key, some)), "Published, reference, ours"));
 }
@@ -118,5 +118,5 @@ export function caseTexts(results: ResultData[]): HTMLElement {
 
 function textOf(result: ResultData, text: string, named: boolean): HTMLElement {
   const body = h("pre", { tabindex: "0", "aria-label": `Text of ${result.name}` }, text || "(empty)");
-  return h("div", { class: "text" }, named ? h("h3", {}, result.name) : null, body);
+  return h("div", { class: "text" }, named ? h("h3", { title: result.name }, result.label) : null, body);
 }

@@ -310,9 +310,9 @@ export function mesh(n = 24) {
 // --- pages ----------------------------------------------------------------------------------------------------------
 
 export function pair() {
-  const coarse = membrane("membrane-25", 0.93, 25);
+  const coarse = membrane("coarse/membrane-25", 0.93, 25);
   coarse.view.states = coarse.view.states.filter((_, s) => s !== 2);
-  return page(membrane("membrane-50"), coarse);
+  return page(membrane("fine/membrane-50"), coarse);
 }
 
 export const PAGES = {
