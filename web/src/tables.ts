@@ -45,7 +45,7 @@ function percent(deviation: number | null): Cell {
 }
 
 /** What several results may have been held against alike: the same value at the same state. */
-const sameVerdict = (v: Verdict): string => JSON.stringify([v.what, v.at, v.kind, v.expected]);
+const sameVerdict = (v: Verdict): string => JSON.stringify([v.what, v.at, v.kind, v.expected, v.limit, v.source]);
 
 function verdictRow(key: string, results: ResultData[]): Cell[] {
   const found = results.map(({ verdicts }) => verdicts.find((v) => sameVerdict(v) === key));
@@ -62,7 +62,7 @@ function verdictRow(key: string, results: ResultData[]): Cell[] {
     return [value(v.ours), percent(v.deviation), { text: VERDICTS[v.verdict] ?? v.verdict, class: `verdict ${v.verdict}` }];
   });
   const at = `${parameter.name} ${quantity(first.at, parameter.unit)}`;
-  return [{ text: words(first.what) }, { text: at, class: "number" }, expected("published"), expected("reference"), ...ours, { text: first.limit, class: "number" }, { text: first.source }];
+  return [{ text: words(first.what) }, { text: at, class: "number" }, expected("published"), expected("reference"), ...ours, { text: first.limit, class: "number" }, { text: first.source, class: "source" }];
 }
 
 /** Published / reference / ours / deviation; of several results, ours and deviation side by side. */
