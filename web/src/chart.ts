@@ -16,6 +16,11 @@ export interface ChartOptions {
   marks(): number[];
 }
 
+interface LineStyle {
+  stroke: string;
+  dash: readonly number[];
+}
+
 /** A short history is drawn with a dot at each row. */
 const DOTS_UP_TO = 30;
 
@@ -69,7 +74,7 @@ export class Chart {
     if (width > 0 && height > 0) this.plot?.setSize({ width, height });
   }
 
-  private style(n: number): { stroke: string; dash: readonly number[] } {
+  private style(n: number): LineStyle {
     const tables = [...new Set(this.lines.map((line) => line.table))];
     const columns = [...new Set(this.lines.map((line) => line.name))];
     const table = tables.indexOf(this.lines[n]!.table);
@@ -123,7 +128,18 @@ export class Chart {
   }
 
   private drawLegend(): void {
-    this.legend.replaceChildren(...this.lines.map((line, n) => h("span", { class: "item" }, this.sample(n), line.label)));
+    const item = (sample: SVGSVGElement, name: string) => h("span", { class: "item" }, sample, name);
+    const tables = [...new Set(this.lines.map((line) => line.table))];
+    const names = [...new Set(this.lines.map((line) => line.name))];
+    if (tables.length < 2 || names.length < 2) {
+      this.legend.replaceChildren(...this.lines.map((line, n) => item(this.sample(this.style(n)), line.label)));
+      return;
+    }
+    // Many lines: what the colours mean, and what the dashes.
+    const first = (is: (line: Line) => boolean) => this.style(this.lines.findIndex(is));
+    const results = tables.map((table) => item(this.sample({ ...first((line) => line.table === table), dash: [] }), table.result.label));
+    const columns = names.map((name) => item(this.sample({ ...first((line) => line.name === name), stroke: colour("ink") }), words(name)));
+    this.legend.replaceChildren(...results, ...columns);
   }
 
   /** The values under the cursor, with all digits. */
@@ -136,7 +152,7 @@ export class Chart {
     const rows = this.lines.map((line, n) => {
       const at = nearestRow(u.data[0]!, u.data[n + 1]!, row);
       const y = at === null ? null : u.data[n + 1]![at];
-      return h("tr", {}, h("th", {}, this.sample(n), " ", line.label), h("td", {}, y == null ? "–" : digits(y, line.unit)));
+      return h("tr", {}, h("th", {}, this.sample(this.style(n)), " ", line.label), h("td", {}, y == null ? "–" : digits(y, line.unit)));
     });
     const head = h("tr", {}, h("th", {}, xTitle), h("td", {}, digits(u.data[0]![row]!, xUnit)));
     this.tip.replaceChildren(h("table", {}, head, ...rows));
@@ -153,8 +169,7 @@ export class Chart {
     this.tip.style.top = `${Math.max(4, Math.min(top, window.innerHeight - height - 4))}px`;
   }
 
-  private sample(n: number): SVGSVGElement {
-    const { stroke, dash } = this.style(n);
+  private sample({ stroke, dash }: LineStyle): SVGSVGElement {
     const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
     svg.setAttribute("class", "sample");
     svg.setAttribute("viewBox", "0 0 26 8");

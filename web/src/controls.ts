@@ -37,7 +37,7 @@ export class Controls {
     maps: ColourMap[],
   ) {
     this.slider.max = String(Math.max(0, view.values.length - 1));
-    for (const map of maps) this.map.append(h("option", { value: map.name }, map.label));
+    for (const map of maps) this.map.append(h("option", { value: map.name, title: map.label }, words(map.name)));
     for (const [value, label] of [["all", "all states"], ["state", "this state"], ["typed", "typed"]] as const)
       this.range.append(h("option", { value }, label));
     for (const field of view.fields) this.field.append(h("option", { value: field.name }, words(field.name)));

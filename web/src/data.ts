@@ -23,6 +23,8 @@ export interface PageData {
 export type Status = "finished" | "failed" | "interrupted" | "unfinished";
 export interface ResultData {
   name: string;
+  /** The last part of the name, where that tells the results apart; made here. */
+  label: string;
   title: string;
   status: Status;
   parameter: { name: string; unit: string };
@@ -97,7 +99,14 @@ export function readPage(): PageData {
     throw new DataError(`The data of this page have format ${String(page.format)}; it can show format 1.`);
   if (!page.results?.length || !page.colour_maps?.length)
     throw new DataError("The data of this page are damaged: results or colour maps are missing.");
+  label(page.results);
   return page as PageData;
+}
+
+function label(results: ResultData[]): void {
+  const last = (result: ResultData) => result.name.split("/").at(-1) || result.name;
+  const apart = new Set(results.map(last)).size === results.length;
+  for (const result of results) result.label = apart ? last(result) : result.name;
 }
 
 const BYTES = { float32: 4, float64: 8, uint32: 4 } as const;

@@ -12,7 +12,7 @@ export interface Inset {
 }
 /** The field itself is drawn inside of these margins (CSS pixels). */
 export const insetFor = (dimension: 2 | 3): Inset =>
-  dimension === 2 ? { left: 58, right: 110, top: 10, bottom: 40 } : { left: 6, right: 110, top: 6, bottom: 6 };
+  dimension === 2 ? { left: 58, right: 12, top: 10, bottom: 40 } : { left: 4, right: 4, top: 4, bottom: 4 };
 
 export interface Bar {
   title: string;
@@ -25,7 +25,6 @@ export interface Decor {
   width: number;
   height: number;
   inset: Inset;
-  bar: Bar | null;
   /** 2D: what part of the plane is to be seen (m). */
   plane: { x: [number, number]; y: [number, number] } | null;
   /** 3D: the axes x, y, z as they point on the screen (right, up), and the size of the body. */
@@ -39,7 +38,6 @@ export function drawDecor(ctx: Ctx, decor: Decor): void {
   ctx.lineWidth = 1;
   if (decor.plane) drawAxes(ctx, decor, decor.plane);
   if (decor.triad) drawTriad(ctx, decor, decor.triad);
-  if (decor.bar) drawBar(ctx, decor, decor.bar);
   ctx.restore();
 }
 
@@ -107,14 +105,18 @@ function drawTriad(ctx: Ctx, decor: Decor, triad: NonNullable<Decor["triad"]>): 
   text(ctx, `undeformed: ${size} ${scale.unit}`, 12, decor.height - 16, "left");
 }
 
-/** The colour bar at the right edge: title, unit and numbers that all fit into the margin. */
-function drawBar(ctx: Ctx, decor: Decor, bar: Bar): void {
+/** The width of a colour bar with its numbers (CSS pixels). */
+export const BAR_WIDTH = 108;
+
+/** The colour bar: title, unit and numbers that all fit into its width. */
+export function drawBar(ctx: Ctx, bar: Bar, whole: number): void {
   const scale = scaleFor(Math.max(Math.abs(bar.low), Math.abs(bar.high)), bar.unit);
-  const left = decor.width - decor.inset.right + 14;
+  const left = 8;
+  ctx.lineWidth = 1;
   const lines = titleLines(ctx, bar, pretty(scale.unit));
-  lines.forEach((words, n) => text(ctx, words, left - 4, 16 + 15 * n, "left", 12, 600));
-  const top = 24 + 15 * lines.length;
-  const bottom = decor.height - Math.max(decor.inset.bottom, 16);
+  lines.forEach((words, n) => text(ctx, words, left - 1, 18 + 15 * n, "left", 12, 600));
+  const top = 26 + 15 * lines.length;
+  const bottom = whole - 22;
   const steps = bar.table.length / 3;
   const height = bottom - top;
   for (let y = 0; y < height; ++y) {

@@ -44,10 +44,18 @@ const STATUS = {
   unfinished: "The run is not finished: it goes on, or was killed. What it has written is shown.",
 } as const;
 
+/** How the runs ended. Of several, those that finished share a badge. */
+function badges(results: ResultData[]): HTMLElement[] {
+  const badge = (status: ResultData["status"], text: string) => h("span", { class: `badge ${status}`, title: STATUS[status] }, text);
+  if (results.length === 1) return [badge(results[0]!.status, results[0]!.status)];
+  const finished = results.filter((r) => r.status === "finished").length;
+  const others = results.filter((r) => r.status !== "finished").map((r) => badge(r.status, `${r.label}: ${r.status}`));
+  return finished > 0 ? [badge("finished", `${finished} finished`), ...others] : others;
+}
+
 function header(data: PageData): HTMLElement {
   const { results, program, written } = data;
-  const title = results.length === 1 ? results[0]!.title : results.map((r) => r.name).join(" · ");
-  const badges = results.map((r) => h("span", { class: `badge ${r.status}`, title: STATUS[r.status] }, results.length > 1 ? `${r.name}: ${r.status}` : r.status));
+  const title = results.length === 1 ? results[0]!.title : results.map((r) => r.label).join(" · ");
   const link = (id: string, name: string) => h("a", { href: `#${id}` }, name);
   const help = helpDialog();
   const toggle = h("button", { type: "button", class: "icon", title: "Light or dark", "aria-label": "Light or dark", onclick: () => setTheme(theme() === "dark" ? "light" : "dark") }, "◐");
@@ -59,7 +67,7 @@ function header(data: PageData): HTMLElement {
     "header",
     { class: "top" },
     h("h1", { title }, title),
-    ...badges,
+    ...badges(results),
     h("nav", { "aria-label": "Sections" }, link("view", "View"), link("plots", "Plots"), link("numbers", "Numbers"), link("run", "Run"), link("case", "Case")),
     h("span", { class: "program", title: `written ${written}` }, program),
     toggle,
@@ -75,7 +83,7 @@ const words = (error: unknown): string =>
 
 /** Sentences near the view: what went wrong in the run, what was thinned. */
 function remarks(results: ResultData[]): HTMLElement[] {
-  const named = (r: ResultData, text: string) => (results.length > 1 ? `${r.name}: ${text}` : text);
+  const named = (r: ResultData, text: string) => (results.length > 1 ? `${r.label}: ${text}` : text);
   return results.flatMap((r) => [
     ...(r.status === "finished" ? [] : [message(named(r, STATUS[r.status]), r.status === "failed" ? "error" : "warning")]),
     ...r.notes.map((note) => message(named(r, note), "note")),

@@ -2,7 +2,7 @@
 
 import { cross, project, projection, unit, type Box, type Projection, type Vector } from "./camera";
 import { FieldStore, float32, uint32, type ResultData, type ViewData } from "./data";
-import { drawDecor, insetFor, type Bar, type Decor } from "./decor";
+import { drawDecor, insetFor, type Decor } from "./decor";
 import { h } from "./dom";
 import { pick } from "./pick";
 import { Scene } from "./scene";
@@ -46,7 +46,7 @@ export class Panel {
     const holder = h("div", { class: "gl" });
     holder.style.inset = `${inset.top}px ${inset.right}px ${inset.bottom}px ${inset.left}px`;
     const frame = h("div", { class: "frame", tabindex: "0", role: "img" }, holder);
-    const element = h("div", { class: "panel" }, named ? h("h3", {}, result.name) : null, frame);
+    const element = h("div", { class: "panel" }, named ? h("h3", { title: result.name }, result.label) : null, frame);
     place.append(element);
     const scene = new Scene({ dimension, spacing: view.spacing, positions, cells }, holder);
     return new Panel(result, dimension, element, frame, holder, scene);
@@ -80,16 +80,16 @@ export class Panel {
     this.note.hidden = sentences.length === 0;
   }
 
-  drawOverlay(bar: Bar | null): void {
+  drawOverlay(): void {
     const ratio = window.devicePixelRatio || 1;
     this.overlay.width = Math.round(this.frame.clientWidth * ratio);
     this.overlay.height = Math.round(this.frame.clientHeight * ratio);
     const ctx = this.overlay.getContext("2d")!;
     ctx.scale(ratio, ratio);
-    drawDecor(ctx, this.decor(bar));
+    drawDecor(ctx, this.decor());
   }
 
-  decor(bar: Bar | null): Decor {
+  decor(): Decor {
     const [width, height] = this.size;
     const camera = this.scene.renderer.getActiveCamera();
     const half = camera.getParallelScale();
@@ -100,7 +100,6 @@ export class Panel {
       width: this.frame.clientWidth,
       height: this.frame.clientHeight,
       inset: insetFor(this.dimension),
-      bar,
       plane: flat ? { x: [x - wide, x + wide], y: [y - half, y + half] } : null,
       triad: flat ? null : { axes: this.screenAxes(), size: sizeOf(this.bounds) },
     };

@@ -1,38 +1,48 @@
-import { drawDecor, insetFor, type Bar } from "./decor";
+import { BAR_WIDTH, drawBar, drawDecor, insetFor, type Bar } from "./decor";
 import { h } from "./dom";
 import type { Panel } from "./panel";
 import { colour, FONT } from "./theme";
 
-const HEAD = 34; // height of the title, CSS pixels
+const HEAD = 34; // height of a title, CSS pixels
 
-/** All panels side by side under their titles, with axes and colour bars, as PNG in the pixels of the screen. */
-export function picture(panels: Panel[], bar: Bar | null): Promise<Blob> {
+/**
+ * All panels under their titles, arranged as on the screen, with axes and colour bar; as PNG in the pixels of the
+ * screen.
+ */
+export function picture(panels: Panel[], bar: Bar | null, columns: number): Promise<Blob> {
   const ratio = window.devicePixelRatio || 1;
-  const width = panels.reduce((sum, panel) => sum + panel.frame.clientWidth, 0);
-  const height = Math.max(...panels.map((panel) => panel.frame.clientHeight)) + HEAD;
+  const wide = Math.max(...panels.map((panel) => panel.frame.clientWidth));
+  const tall = Math.max(...panels.map((panel) => panel.frame.clientHeight)) + HEAD;
+  const width = columns * wide + (bar ? BAR_WIDTH : 0);
+  const height = Math.ceil(panels.length / columns) * tall;
   const canvas = h("canvas", { width: Math.round(width * ratio), height: Math.round(height * ratio) });
   const ctx = canvas.getContext("2d")!;
   ctx.scale(ratio, ratio);
   ctx.fillStyle = colour("ground");
   ctx.fillRect(0, 0, width, height);
-  for (const panel of panels) {
-    drawPanel(ctx, panel, bar, panels.length > 1 ? panel.result.name : panel.result.title);
-    ctx.translate(panel.frame.clientWidth, 0);
-  }
+  panels.forEach((panel, n) => {
+    const title = panels.length > 1 ? panel.result.label : panel.result.title;
+    at(ctx, (n % columns) * wide, Math.floor(n / columns) * tall, () => drawPanel(ctx, panel, title));
+  });
+  if (bar) at(ctx, columns * wide, HEAD, () => drawBar(ctx, bar, height - HEAD));
   return new Promise((done, fail) => {
     canvas.toBlob((blob) => (blob ? done(blob) : fail(new Error("the picture could not be made"))), "image/png");
   });
 }
 
-function drawPanel(ctx: CanvasRenderingContext2D, panel: Panel, bar: Bar | null, title: string): void {
+function at(ctx: CanvasRenderingContext2D, x: number, y: number, draw: () => void): void {
+  ctx.save();
+  ctx.translate(x, y);
+  draw();
+  ctx.restore();
+}
+
+function drawPanel(ctx: CanvasRenderingContext2D, panel: Panel, title: string): void {
   const inset = insetFor(panel.dimension);
   // The browser clears a canvas of WebGL once it has shown it: draw anew, and copy in the same turn.
   panel.scene.render();
   ctx.drawImage(panel.scene.canvas, inset.left, HEAD + inset.top, ...panel.size);
-  ctx.save();
-  ctx.translate(0, HEAD);
-  drawDecor(ctx, panel.decor(bar));
-  ctx.restore();
+  at(ctx, 0, HEAD, () => drawDecor(ctx, panel.decor()));
   ctx.fillStyle = colour("ink");
   ctx.textAlign = "left";
   ctx.textBaseline = "middle";

@@ -1,7 +1,7 @@
 // The plots of the histories: which columns over which, and the files to download.
 
 import { Chart } from "./chart";
-import { readHistory, type Column, type HistoryData, type ResultData } from "./data";
+import { readHistory, type Column, type ResultData } from "./data";
 import { download, fileName, h, words } from "./dom";
 import { csv, type Line, type Table } from "./series";
 import { onTheme } from "./theme";
@@ -28,15 +28,16 @@ export class Plots {
       const tables: Table[] = [];
       for (const result of results)
         for (const history of result.histories.filter((h) => h.name === name && h.rows > 0))
-          await readHistory(history).then((columns) => tables.push({ result: result.name, history, columns }), failed);
+          await readHistory(history).then((columns) => tables.push({ result, history, columns }), failed);
       if (tables.length > 0) this.add(name, tables);
     }
     if (this.cards.length === 0) this.element.append(h("p", { class: "quiet" }, "This result has no histories."));
   }
 
   private add(name: string, tables: Table[]): void {
-    for (const { title, columns, files } of plotsOf(name, tables[0]!.history)) {
-      const card = new PlotCard(title, tables, columns, files, this.shown);
+    const columns = allColumns(tables);
+    for (const { title, chosen, files } of plotsOf(name, columns)) {
+      const card = new PlotCard(title, tables, columns, chosen, files, this.shown);
       this.cards.push(card);
       this.element.append(card.element);
       card.draw();
@@ -52,25 +53,33 @@ export class Plots {
   }
 }
 
+/** The columns of all tables, each name once: cases need not have the same probes. */
+function allColumns(tables: Table[]): Column[] {
+  const columns = new Map<string, Column>();
+  for (const { history } of tables) for (const column of history.columns) if (!columns.has(column.name)) columns.set(column.name, column);
+  return [...columns.values()];
+}
+
 interface PlotPlan {
   title: string;
-  columns: number[];
+  chosen: number[]; // indices of columns
   files: boolean; // whether it offers the CSV files
 }
 
 /** What is plotted of a history at first. Energies and the error of their balance differ by powers of ten. */
-function plotsOf(name: string, history: HistoryData): PlotPlan[] {
-  const rest = history.columns.map((_, c) => c).slice(1);
+function plotsOf(name: string, columns: Column[]): PlotPlan[] {
+  const rest = columns.map((_, c) => c).slice(1);
+  if (rest.length === 0) return []; // A case without probes has nothing but the parameter.
   if (name === "energy") {
-    const error = rest.filter((c) => /balance|error/.test(history.columns[c]!.name));
+    const error = rest.filter((c) => /balance|error/.test(columns[c]!.name));
     const energies = rest.filter((c) => !error.includes(c));
-    const plans = [{ title: "Energy", columns: energies, files: true }];
-    return error.length > 0 ? [...plans, { title: "Energy balance", columns: error, files: false }] : plans;
+    const plans = [{ title: "Energy", chosen: energies, files: true }];
+    return error.length > 0 ? [...plans, { title: "Energy balance", chosen: error, files: false }] : plans;
   }
-  const unit = history.columns[rest[0] ?? 0]!.unit;
-  const columns = rest.filter((c) => history.columns[c]!.unit === unit).slice(0, FIRST_LINES);
+  const { unit } = columns[rest[0]!]!;
+  const chosen = rest.filter((c) => columns[c]!.unit === unit).slice(0, FIRST_LINES);
   const title = /^[a-z_]+$/.test(name) ? name.charAt(0).toUpperCase() + words(name).slice(1) : name;
-  return [{ title, columns, files: true }];
+  return [{ title, chosen, files: true }];
 }
 
 class PlotCard {
@@ -81,16 +90,13 @@ class PlotCard {
   constructor(
     readonly title: string,
     private readonly tables: Table[],
+    private readonly columns: Column[],
     private chosen: number[],
     files: boolean,
     private readonly shown: Shown,
   ) {
     const head = h("header", {}, h("h3", {}, title), this.xChoice(), this.yChoice(), files ? this.fileButtons() : null);
     this.element = h("article", { class: "plot", "aria-label": `Plot: ${title}` }, head, this.chart.element, this.chart.legend);
-  }
-
-  private get columns(): Column[] {
-    return this.tables[0]!.history.columns;
   }
 
   draw(): void {
@@ -101,29 +107,30 @@ class PlotCard {
   }
 
   private linesOf(table: Table): Line[] {
-    const lines: Line[] = [];
-    for (const column of this.chosen) {
+    const x = this.valuesIn(table, this.x);
+    return this.chosen.flatMap((column) => {
       const { name, unit } = this.columns[column]!;
-      const own = table.history.columns.findIndex((c) => c.name === name);
-      const x = table.history.columns.findIndex((c) => c.name === this.columns[this.x]!.name);
-      if (own < 0 || x < 0) continue; // Another case need not have the same probes.
-      const label = this.tables.length > 1 ? `${table.result}: ${words(name)}` : words(name);
-      lines.push({ label, unit, table, name, x: table.columns[x]!, y: table.columns[own]! });
-    }
-    return lines;
+      const y = this.valuesIn(table, column);
+      const label = this.tables.length > 1 ? `${table.result.label}: ${words(name)}` : words(name);
+      return x && y ? [{ label, name, unit, table, x, y }] : [];
+    });
+  }
+
+  private valuesIn(table: Table, column: number): Float64Array | undefined {
+    return table.columns[table.history.columns.findIndex(({ name }) => name === this.columns[column]!.name)];
   }
 
   /** x of the row that is nearest to the shown state. */
   private marks(): number[] {
     return this.tables.map((table) => {
-      const value = this.shown(table.result);
+      const value = this.shown(table.result.name);
       if (this.x === 0) return value;
       const parameter = table.columns[0]!;
       let best = 0;
       parameter.forEach((p, row) => {
         if (Math.abs(p - value) < Math.abs(parameter[best]! - value)) best = row;
       });
-      return Number.isNaN(value) ? NaN : table.columns[this.x]![best]!;
+      return Number.isNaN(value) ? NaN : (this.valuesIn(table, this.x)?.[best] ?? NaN);
     });
   }
 
@@ -160,9 +167,9 @@ class PlotCard {
 
   private fileButtons(): HTMLElement {
     const buttons = this.tables.map((table) => {
-      const save = () => download(`${fileName(table.result)}-${fileName(table.history.name)}.csv`, new Blob([csv(table)], { type: "text/csv" }));
-      const label = this.tables.length > 1 ? table.result : "CSV";
-      return h("button", { type: "button", class: "small", title: `Save the history of ${table.result} as CSV`, onclick: save }, label);
+      const save = () => download(`${fileName(table.result.name)}-${fileName(table.history.name)}.csv`, new Blob([csv(table)], { type: "text/csv" }));
+      const label = this.tables.length > 1 ? table.result.label : "CSV";
+      return h("button", { type: "button", class: "small", title: `Save the history of ${table.result.name} as CSV`, onclick: save }, label);
     });
     if (buttons.length === 1) return buttons[0]!;
     return foldOut("CSV", `${this.title}: CSV files`, h("div", { class: "menu", tabindex: "-1" }, ...buttons));

@@ -1,10 +1,10 @@
 // Columns of histories, of one result or of several, as one table for uPlot.
 
-import type { HistoryData } from "./data";
+import type { HistoryData, ResultData } from "./data";
 
 /** A history of one result, unpacked. */
 export interface Table {
-  result: string;
+  result: ResultData;
   history: HistoryData;
   columns: Float64Array[];
 }

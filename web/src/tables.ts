@@ -18,7 +18,7 @@ function table(head: string[], rows: Cell[][], label: string): HTMLElement {
 const allNames = (lists: string[][]): string[] => [...new Set(lists.flat())];
 
 /** A column for each result; over a single one there is no need to say whose it is. */
-const resultColumns = (results: ResultData[], single: string): string[] => (results.length > 1 ? results.map((r) => r.name) : [single]);
+const resultColumns = (results: ResultData[], single: string): string[] => (results.length > 1 ? results.map((r) => r.label) : [single]);
 
 export function metricsTable(results: ResultData[]): HTMLElement {
   const names = allNames(results.map((r) => r.metrics.map((m) => m.name)));
@@ -45,7 +45,7 @@ function percent(deviation: number | null): Cell {
 }
 
 /** What several results may have been held against alike: the same value at the same state. */
-const sameVerdict = (v: Verdict): string => JSON.stringify([v.what, v.at, v.kind, v.expected]);
+const sameVerdict = (v: Verdict): string => JSON.stringify([v.what, v.at, v.kind, v.expected, v.limit, v.source]);
 
 function verdictRow(key: string, results: ResultData[]): Cell[] {
   const found = results.map(({ verdicts }) => verdicts.find((v) => sameVerdict(v) === key));
@@ -62,7 +62,7 @@ function verdictRow(key: string, results: ResultData[]): Cell[] {
     return [value(v.ours), percent(v.deviation), { text: VERDICTS[v.verdict] ?? v.verdict, class: `verdict ${v.verdict}` }];
   });
   const at = `${parameter.name} ${quantity(first.at, parameter.unit)}`;
-  return [{ text: words(first.what) }, { text: at, class: "number" }, expected("published"), expected("reference"), ...ours, { text: first.limit, class: "number" }, { text: first.source }];
+  return [{ text: words(first.what) }, { text: at, class: "number" }, expected("published"), expected("reference"), ...ours, { text: first.limit, class: "number" }, { text: first.source, class: "source" }];
 }
 
 /** Published / reference / ours / deviation; of several results, ours and deviation side by side. */
@@ -70,7 +70,7 @@ export function verdictTable(results: ResultData[]): HTMLElement {
   const some = results.filter((r) => r.verdicts.length > 0);
   if (some.length === 0) return h("p", { class: "quiet" }, "The case expects nothing: there is no published or reference value to compare with.");
   const keys = allNames(some.map((r) => r.verdicts.map(sameVerdict)));
-  const ours = some.flatMap(({ name }) => [results.length > 1 ? `ours: ${name}` : "ours", "deviation", "verdict"]);
+  const ours = some.flatMap((r) => [results.length > 1 ? `ours: ${r.label}` : "ours", "deviation", "verdict"]);
   const head = ["what", "at", "published", "reference", ...ours, "limit", "source"];
   return h("div", { class: "verdicts" }, table(head, keys.map((key) => verdictRow(key, some)), "Published, reference, ours"));
 }
@@ -118,5 +118,5 @@ export function caseTexts(results: ResultData[]): HTMLElement {
 
 function textOf(result: ResultData, text: string, named: boolean): HTMLElement {
   const body = h("pre", { tabindex: "0", "aria-label": `Text of ${result.name}` }, text || "(empty)");
-  return h("div", { class: "text" }, named ? h("h3", {}, result.name) : null, body);
+  return h("div", { class: "text" }, named ? h("h3", { title: result.name }, result.label) : null, body);
 }

@@ -3,13 +3,14 @@
 import { fittingPose, listen, pan, poseOf, setPose, turn, zoom, type Box } from "./camera";
 import { colourTable, paint } from "./colours";
 import type { ColourMap, Field, ResultData } from "./data";
-import type { Bar } from "./decor";
+import { drawBar, type Bar } from "./decor";
 import { h } from "./dom";
 import { EMPTY_RANGE, fieldIndex, fieldTitle, joined, nearestState, rangeOf, scalars, type Component, type Range } from "./fields";
 import { boxOf, Panel, sizeOf } from "./panel";
 import { picture } from "./picture";
 import { onTheme, rgb } from "./theme";
 import type { Picked } from "./tip";
+import { quantity } from "./units";
 
 /** What the controls set. */
 export interface Settings {
@@ -36,6 +37,8 @@ const STILL_AFTER = 300;
 
 export class View {
   readonly element = h("div", { class: "panels" });
+  private readonly grid = h("div", { class: "grid" });
+  private readonly barCanvas = h("canvas", { class: "bar", role: "img" });
   readonly dimension: 2 | 3;
   /** Values of the parameter at which there is a state, of any result. */
   readonly values: number[];
@@ -49,6 +52,8 @@ export class View {
   private readonly ranges = new Map<string, Promise<Range>>();
   private work: Promise<void> = Promise.resolve();
   private waiting = false;
+  private linked = true;
+  private columns = 1;
   private frame = 0;
   private still = 0;
 
@@ -84,17 +89,18 @@ export class View {
 
   /** Unpacks the points and draws the first picture. The element must be in the page, for its size. */
   async open(): Promise<void> {
+    this.element.append(this.grid, this.barCanvas);
     for (const result of this.results) this.panels.push(await this.makePanel(result));
     await this.chooseField();
     await this.prepare();
     await this.fit();
     this.changed.forEach((listener) => listener());
-    new ResizeObserver(() => this.resize()).observe(this.element);
+    new ResizeObserver(() => void this.resize()).observe(this.element);
     onTheme(() => this.retheme());
   }
 
   private async makePanel(result: ResultData): Promise<Panel> {
-    const panel = await Panel.make(result, this.dimension, this.results.length > 1, this.element);
+    const panel = await Panel.make(result, this.dimension, this.results.length > 1, this.grid);
     listen(panel.holder, panel.scene, {
       changed: () => this.cameraMoved(panel),
       hover: (x, y) => void panel.hover(x, y).catch((error: unknown) => this.fail(error)),
@@ -245,12 +251,12 @@ export class View {
   /** Draws all panels; after moving pictures that were coarse, a full one follows. */
   private render(moving = false): void {
     clearTimeout(this.still);
-    const bar = this.bar();
     let coarse = false;
     for (const panel of this.panels) {
       coarse = panel.scene.render(moving) || coarse;
-      panel.drawOverlay(bar);
+      panel.drawOverlay();
     }
+    this.drawBar();
     if (coarse) this.still = window.setTimeout(() => this.render(), STILL_AFTER);
   }
 
@@ -259,6 +265,21 @@ export class View {
       this.frame = 0;
       this.render(true);
     });
+  }
+
+  /** One bar serves all panels: their colours are the same. */
+  private drawBar(): void {
+    const bar = this.bar();
+    const { barCanvas } = this;
+    barCanvas.hidden = bar === null;
+    if (!bar) return;
+    const ratio = window.devicePixelRatio || 1;
+    barCanvas.width = Math.round(barCanvas.clientWidth * ratio);
+    barCanvas.height = Math.round(barCanvas.clientHeight * ratio);
+    barCanvas.setAttribute("aria-label", `${bar.title} from ${quantity(bar.low, bar.unit)} to ${quantity(bar.high, bar.unit)}`);
+    const ctx = barCanvas.getContext("2d")!;
+    ctx.scale(ratio, ratio);
+    drawBar(ctx, bar, barCanvas.clientHeight);
   }
 
   private resize(): void {
@@ -279,42 +300,54 @@ export class View {
   }
 
   picture(): Promise<Blob> {
-    return picture(this.panels, this.bar());
+    return picture(this.panels, this.bar(), this.columns);
   }
 
   // --- camera --------------------------------------------------------------------------------------------------
 
   private cameraMoved(by: Panel): void {
     const pose = poseOf(by.scene);
-    for (const panel of this.panels) if (panel !== by) setPose(panel.scene, pose);
+    if (this.linked) for (const panel of this.panels) if (panel !== by) setPose(panel.scene, pose);
     this.renderSoon();
   }
 
-  /** Shows all of the bodies as they are now and at the first and the last state; solids from `direction`. */
+  /**
+   * Shows all of the bodies as they are now and at the first and the last state; solids from `direction`. Bodies of
+   * about the same size share a camera; others would be specks, and have cameras of their own.
+   */
   async fit(direction = "oblique"): Promise<void> {
-    const box = await this.bounds();
-    // Wide bodies stand one below the other, where there is more room for them.
-    const [wide, tall] = sizeOf(box);
-    this.element.classList.toggle("stacked", this.dimension === 2 && this.panels.length === 2 && wide > 1.4 * tall);
-    for (const { scene, size } of this.panels) {
+    const boxes = await Promise.all(this.panels.map((panel) => this.boundsOf(panel)));
+    const all = boxes.reduce(union);
+    this.linked = boxes.every((box) => Math.max(...sizeOf(box)) > 0.5 * Math.max(...sizeOf(all)));
+    this.arrange(all);
+    this.panels.forEach(({ scene, size }, n) => {
       scene.resize(...size);
-      setPose(scene, fittingPose(box, size[0] / size[1], this.dimension, direction));
-    }
+      setPose(scene, fittingPose(this.linked ? all : boxes[n]!, size[0] / size[1], this.dimension, direction));
+    });
     this.render();
   }
 
-  private async bounds(): Promise<Box> {
-    let box: Box = [Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity];
-    for (const { view, store, scene, bounds, state } of this.panels) {
-      const f = fieldIndex(view, "displacement");
-      const states = f < 0 ? [] : [...new Set([0, state, view.states.length - 1])].filter((s) => s >= 0);
-      const boxes = [bounds];
-      for (const s of states) boxes.push(boxOf(scene.body.positions, await store.get(s, f), this.settings.deformation));
-      const rim = scene.body.spacing;
-      for (const one of boxes)
-        box = box.map((edge, n) => (n % 2 === 0 ? Math.min(edge, one[n]! - rim) : Math.max(edge, one[n]! + rim))) as Box;
-    }
-    return box;
+  /** As many panels side by side as make bodies like `box` largest. */
+  private arrange(box: Box): void {
+    const { clientWidth, clientHeight } = this.grid;
+    const [wide, tall] = this.dimension === 2 ? sizeOf(box) : [1, 1];
+    const room = (columns: number) => {
+      const rows = Math.ceil(this.panels.length / columns);
+      // What axes, titles and notes take of a panel.
+      return Math.min((clientWidth / columns - 75) / wide!, (clientHeight / rows - 100) / tall!);
+    };
+    const counts = this.panels.map((_, n) => n + 1);
+    this.columns = counts.reduce((best, n) => (room(n) > room(best) ? n : best), 1);
+    this.grid.style.gridTemplateColumns = `repeat(${this.columns}, minmax(0, 1fr))`;
+  }
+
+  private async boundsOf({ view, store, scene, bounds, state }: Panel): Promise<Box> {
+    const f = fieldIndex(view, "displacement");
+    const states = f < 0 ? [] : [...new Set([0, state, view.states.length - 1])].filter((s) => s >= 0);
+    let box = bounds;
+    for (const s of states) box = union(box, boxOf(scene.body.positions, await store.get(s, f), this.settings.deformation));
+    const rim = scene.body.spacing;
+    return box.map((edge, n) => edge + (n % 2 === 0 ? -rim : rim)) as Box;
   }
 
   /** Moves the cameras from the keyboard. */
@@ -363,3 +396,5 @@ export class View {
     return part;
   }
 }
+
+const union = (a: Box, b: Box): Box => a.map((edge, n) => (n % 2 === 0 ? Math.min(edge, b[n]!) : Math.max(edge, b[n]!))) as Box;

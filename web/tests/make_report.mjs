@@ -244,7 +244,7 @@ export function block(n = [24, 12, 8]) {
     spacing: h,
     fields: [
       { name: "displacement", unit: "m", components: 3, of: ([x, y, z], t) => [100 * t * x, -20 * t * y, 30 * t * x * z] },
-      { name: "damage", unit: "", components: 1, of: () => 0 },
+      { name: "damage", unit: "", components: 1, of: ([x], t) => (t > 0 && x > 0.115 ? 0.6 : 0) },
       { name: "nominal_stress", unit: "Pa", components: 9, of: ([x, y, z], t) => range(9, (c) => 1e9 * t * (x + c * y - z)) },
     ],
     histories: [
@@ -310,9 +310,9 @@ export function mesh(n = 24) {
 // --- pages ----------------------------------------------------------------------------------------------------------
 
 export function pair() {
-  const coarse = membrane("membrane-25", 0.93, 25);
+  const coarse = membrane("coarse/membrane-25", 0.93, 25);
   coarse.view.states = coarse.view.states.filter((_, s) => s !== 2);
-  return page(membrane("membrane-50"), coarse);
+  return page(membrane("fine/membrane-50"), coarse);
 }
 
 export const PAGES = {

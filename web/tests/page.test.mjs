@@ -17,6 +17,8 @@ const shot = async (page) => decode(await page.screenshot());
 describe("several results", () => {
   const file = reportFile("pair");
   const { results } = dataOf(file);
+  /** Results are called by the last part of their names. */
+  const last = ({ name }) => name.split("/").at(-1);
   let page, context, complaints;
   before(async () => ({ page, context, complaints } = await open(browser, file)));
   after(() => context.close());
@@ -26,7 +28,7 @@ describe("several results", () => {
     assert.equal(await page.getByLabel("State", { exact: true }).count(), 1);
     const picture = await shot(page);
     for (const canvas of await page.locator(".gl canvas").all()) assert.ok(colours(picture, await canvas.boundingBox()).size > 30);
-    assert.deepEqual(await page.locator(".panel h3").allTextContents(), results.map((r) => r.name));
+    assert.deepEqual(await page.locator(".panel h3").allTextContents(), results.map(last));
   });
 
   test("show each the state nearest to the parameter", async () => {
@@ -45,17 +47,17 @@ describe("several results", () => {
 
   test("are drawn over each other in plots, in colours and dashes of their own", async () => {
     const lines = await page.evaluate(() => window.riven.plots()[0].lines.map((l) => l.label));
-    for (const { name } of results) assert.ok(lines.some((label) => label.startsWith(`${name}: `)), name);
+    for (const result of results) assert.ok(lines.some((label) => label.startsWith(`${last(result)}: `)), result.name);
     const styles = await page.locator(".plot").first().locator(".sample path").evaluateAll((paths) => paths.map((p) => `${p.getAttribute("stroke")} ${p.getAttribute("stroke-dasharray")}`));
     assert.equal(new Set(styles).size, styles.length);
   });
 
   test("stand side by side in tables and texts", async () => {
     const heads = await page.locator("#run thead th").allTextContents();
-    assert.deepEqual(heads.slice(1), results.map((r) => r.name));
+    assert.deepEqual(heads.slice(1), results.map(last));
     const verdicts = results.some((r) => r.verdicts.length > 0);
     if (verdicts) assert.equal((await page.locator("#numbers .verdicts thead th").allTextContents()).filter((t) => t.startsWith("ours: ")).length, results.filter((r) => r.verdicts.length > 0).length);
-    assert.deepEqual(await page.locator("#case .text h3").allTextContents(), results.map((r) => r.name));
+    assert.deepEqual(await page.locator("#case .text h3").allTextContents(), results.map(last));
     assert.deepEqual(complaints, []);
   });
 });

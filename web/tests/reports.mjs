@@ -1,6 +1,6 @@
 // The reports that the tests open, and their data as read without any code of the page.
 
-import { existsSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { inflateSync } from "node:zlib";
@@ -8,6 +8,7 @@ import { fill, PAGES } from "./make_report.mjs";
 
 const GIVEN = process.env.RIVEN_REPORTS;
 const folder = mkdtempSync(join(tmpdir(), "riven-reports-"));
+process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
 
 /** The file of a report: of the program, if RIVEN_REPORTS names a folder that has it, else made from formulas. */
 export function reportFile(name) {
