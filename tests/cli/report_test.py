@@ -13,44 +13,8 @@ import time
 import unittest
 import zlib
 
-from program import HOLE, MOVING, PLAIN, PROGRAM, ProgramTest, fields, plain_force, replaced, series
+from program import HOLE, MOVING, PLAIN, PROGRAM, TORN, ProgramTest, fields, plain_force, replaced, series
 
-# A plate that is torn apart: its halves move away from each other, and bonds break at the tip of the crack first.
-TORN = """title = "Plate with a crack, torn"
-
-[geometry]
-box = { size = ["40 mm", "40 mm"], thickness = "1 mm", points = [20, 20] }
-horizon = "3 dx"
-
-[[crack]]
-from = ["-20 mm", 0]
-to = [0, 0]
-
-[model]
-kind = "pmb"
-
-[material.glass]
-law = "linear-elastic"
-youngs_modulus = "72 GPa"
-density = "2440 kg/m^3"
-critical_stretch = 0.001
-
-[[initial]]
-velocity = [0, "500 /s * y"]
-
-[solver]
-method = "verlet"
-until = "20 us"
-
-[output]
-every = "5 us"
-history_every = "1 us"
-
-[[probe]]
-name = "corner"
-kind = "displacement"
-at = ["-19 mm", "19 mm"]
-"""
 EXPECTED = PLAIN + "".join(f"""
 [[expect]]
 metric = "force_x"
