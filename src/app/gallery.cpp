@@ -13,6 +13,7 @@
 #include "output/atomic_file.hpp"
 #include "report/picture.hpp"
 #include "report/result.hpp"
+#include "report/what_to_show.hpp"
 
 namespace riven::app {
 

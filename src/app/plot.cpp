@@ -10,6 +10,7 @@
 #include "report/chart.hpp"
 #include "report/picture.hpp"
 #include "report/result.hpp"
+#include "report/what_to_show.hpp"
 
 namespace riven::app {
 

@@ -3,20 +3,13 @@
 #include <filesystem>
 #include <string>
 
-#include "output/vtu.hpp"
 #include "report/canvas.hpp"
 #include "report/colour_map.hpp"
 #include "report/result.hpp"
+#include "report/scene.hpp"
 #include "report/ticks.hpp"
 
 namespace riven {
-
-/// Rectangle of the plane of view (m).
-struct Frame {
-  Range across, up;
-
-  void include(const Frame& other);
-};
 
 struct PictureSettings {
   PictureSize size;
@@ -32,11 +25,6 @@ struct PictureSettings {
 /// Where the points of a cloud are seen with their displacements times `scale`.
 Frame frame_of(const PointCloud& cloud, double scale);
 
-/// The range of colours that a field takes without one that the user chose: from the least to the greatest
-/// value, without the outermost points if a few of them would leave one colour for all others. A field of
-/// both signs is shown from -a to a, a constant one from 0.
-Range colour_range(const Scalar& scalar);
-
 /// Points at their displaced places, coloured by a number each: in two dimensions with axes, in three from
 /// above a corner, in one as a curve over the place. Returns the file; its kind is that of `path`'s ending.
 std::string draw_field(const PointCloud& cloud, const Scalar& scalar, const PictureSettings& settings,
@@ -44,9 +32,5 @@ std::string draw_field(const PointCloud& cloud, const Scalar& scalar, const Pict
 
 /// "stretch 3", "t = 1.2 ms"
 std::string state_text(const Result& result, std::size_t state);
-
-/// The field that tells most about a state: damage where it has grown since the first state, else the first
-/// there is of strain energy density, stress and displacement. Throws InputError when there are no fields.
-std::string telling_field(const PointCloud& state, const PointCloud& first);
 
 }  // namespace riven

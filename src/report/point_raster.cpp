@@ -24,6 +24,7 @@ class Layers {
   /// order and the colour of what covers the pixel; an infinite order: nothing.
   template <class Cover>
   void paint(Pixel centre, Pixel reach, const Cover& cover) {
+    if (!std::isfinite(centre.x + centre.y)) return;  // of a run that went wrong
     const auto range = [](double at, double half, int limit) {
       const double low = std::floor(kFiner * (at - half)), high = std::ceil(kFiner * (at + half));
       return std::pair(static_cast<int>(std::clamp(low, 0.0, double(limit))),

@@ -58,6 +58,7 @@ Family family_of(std::size_t point, const std::vector<Point>& positions, std::sp
 /// The stretch beyond which a neighbour has gone: far above what nearly all points have.
 double torn_stretch(std::vector<double> stretches) {
   constexpr double kNearlyAll = 0.95, kFar = 4;
+  if (stretches.empty()) return kFar;
   const double last = static_cast<double>(stretches.size()) - 1;
   const auto place = stretches.begin() + static_cast<std::ptrdiff_t>(kNearlyAll * last);
   std::nth_element(stretches.begin(), place, stretches.end());
@@ -141,6 +142,7 @@ PointShapes point_shapes(const std::vector<Point>& positions, std::span<const Po
         here.near.empty() ? mean : here.before(here.near[std::min(axes.size(), here.near.size()) - 1]).norm();
   }
   all.on_lattice = all_alike(all.shapes);
+  std::erase_if(stretches, [](double stretch) { return !std::isfinite(stretch); });
   const double torn = torn_stretch(std::move(stretches));
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < positions.size(); ++i) {

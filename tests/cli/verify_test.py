@@ -1,7 +1,10 @@
 """`riven verify`: what it compares, what decides, and its exit codes."""
 
+import base64
+import html.parser
 import re
 import unittest
+import xml.etree.ElementTree as ElementTree
 
 from program import PLAIN, ProgramTest, plain_force, replaced
 
@@ -33,6 +36,31 @@ value = "{:.9g} N"
 tolerance = "0.1 %"
 kind = "reference"
 """.format(plain_force(1.1))
+
+
+class Page(html.parser.HTMLParser):
+    """A well-formed HTML page as a tree."""
+
+    def __init__(self):
+        super().__init__()
+        self.builder = ElementTree.TreeBuilder()
+
+    @classmethod
+    def read(cls, text):
+        page = cls()
+        page.feed(text)
+        return page.builder.close()
+
+    def handle_starttag(self, tag, attrs):
+        self.builder.start(tag, {key: value or "" for key, value in attrs})
+        if tag in ("meta", "img"):
+            self.builder.end(tag)
+
+    def handle_endtag(self, tag):
+        self.builder.end(tag)
+
+    def handle_data(self, data):
+        self.builder.data(data)
 
 
 class Verify(ProgramTest):
@@ -150,6 +178,43 @@ class Verify(ProgramTest):
             said = self.command("verify", self.write("other.toml", MET), *force, expect=2).stderr
             self.assertIn("not a result of Riven" if force else "exists already", said)
         self.assertEqual(note.read_text(), "dear")
+
+    def test_the_gallery_shows_every_case(self):
+        self.write("home/cases/topic/failing.toml", replaced(replaced(MET, "[1.2, 1.4]", "[1.2, 1.4]\nmax_iterations = 1"),
+                                                             'title = "Sheet"', 'title = "A <hole> & more"')
+                   + '\n[[hole]]\ndisc = { radius = "30 mm" }\n')
+        self.write("home/cases/topic/met.toml", MET)
+        self.write("home/cases/other/missed.toml", MISSED)
+        self.write("home/cases/other/wrong.toml", replaced(MET, "title", "titel"))
+        done = self.command("verify", "--report", expect=3, environment={"RIVEN_HOME": str(self.top / "home")})
+        self.assertEqual(done.stderr.splitlines()[-1], "gallery: results/gallery.html")
+        page = (self.top / "results/gallery.html").read_text(encoding="utf-8")
+        self.assertIn(done.stdout.splitlines()[-1], page)
+        articles = {a.get("id"): a for a in Page.read(page).iter("article")}
+        self.assertEqual(list(articles), ["other/missed", "other/wrong", "topic/failing", "topic/met"])
+        status = {name: a.find("header/span[last()]").text for name, a in articles.items()}
+        self.assertEqual(status, {"other/missed": "missed", "other/wrong": "failed", "topic/failing": "failed",
+                                  "topic/met": "ok"})
+        self.assertEqual(articles["topic/failing"].find("header/h3").text, "A <hole> & more")
+        self.assertIn('did you mean "title"?', "".join(articles["other/wrong"].itertext()))
+        self.assertIn("the run failed; see results/topic/failing/riven.log", "".join(articles["topic/failing"].itertext()))
+        # The table is the one on the screen, without the columns that this case leaves empty.
+        cells = [[td.text or "" for td in tr] for tr in articles["topic/met"].iter("tr")]
+        printed = self.rows(done.stdout[done.stdout.index("topic/met"):])
+        self.assertEqual(cells[0], ["metric", "at", "reference", "ours", "deviation", "limit", ""])
+        self.assertEqual(cells[1:], printed)
+        for name in ("topic/met", "other/missed"):
+            picture = articles[name].find(".//img").get("src")
+            png = base64.b64decode(picture.removeprefix("data:image/png;base64,"), validate=True)
+            self.assertTrue(png.startswith(b"\x89PNG"))
+            self.assertLess(len(png), 150_000)
+        links = [a.get("href") for a in Page.read(page).iter("a")]
+        for link in links:
+            if link.startswith("#"):
+                self.assertIn(f'id="{link[1:]}"', page)
+            else:
+                self.assertTrue((self.top / "results" / link).exists(), link)
+        self.assertNotRegex(page, "https?://|<script")
 
     def test_a_shipped_case(self):
         done = self.command("verify", "neo-hookean-membrane/equibiaxial-plain", "--set", "geometry.box.points=[16,16]")

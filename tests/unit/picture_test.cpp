@@ -9,6 +9,7 @@
 #include "report/chart.hpp"
 #include "report/picture.hpp"
 #include "report/point_raster.hpp"
+#include "report/what_to_show.hpp"
 #include "scratch.hpp"
 
 namespace riven {
