@@ -67,6 +67,7 @@ struct SweepOptions {
   bool resume = false;
   int jobs = 1;     // runs side by side
   int threads = 0;  // of each run; 0: the cores divided among them
+  bool report = false;
 };
 
 enum ExitCode : int { kDone = 0, kMissed = 1, kWrongInput = 2, kFailed = 3, kInterrupted = 130 };
@@ -84,8 +85,9 @@ int compare(const CompareOptions& options);
 int schema(bool markdown);
 /// Writes the page of results.
 int report(const ReportOptions& options);
-/// The page of one result, into its folder.
-void write_report(const std::filesystem::path& folder);
+/// The page of results that another command has made, in `folder`. What is wrong with it is told; returns the
+/// exit code.
+int report_after(const std::vector<std::filesystem::path>& results, const std::filesystem::path& folder);
 /// Draws fields or histories of a result.
 int plot(const PlotOptions& options);
 /// Runs a case with all combinations of some values.

@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "output/atomic_file.hpp"
+#include "report/page.hpp"
 #include "report/picture.hpp"
 #include "report/result.hpp"
 #include "report/what_to_show.hpp"
@@ -167,8 +168,8 @@ std::string facts_of(const Verification& verification, const fs::path& from) {
   std::string text =
       fmt::format("<p class=\"faint\">{}, {} points, {}; <a href=\"{}/\">results</a>", name(summary.status),
                   summary.timing.points, duration_text(summary.timing.wall_s), folder);
-  if (fs::exists(verification.folder / "report.html"))
-    text += fmt::format(", <a href=\"{}/report.html\">report</a>", folder);
+  if (fs::exists(verification.folder / kReportFile))
+    text += fmt::format(", <a href=\"{}/{}\">report</a>", folder, kReportFile);
   return text + "</p>";
 }
 

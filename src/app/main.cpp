@@ -231,6 +231,7 @@ class CommandLine {
     command
         .add_option("--threads", to.threads, "Threads of each run (default: the cores divided among them)")
         ->check(CLI::Range(1, 1024));
+    command.add_flag("--report", to.report, "Write report.html with all variants at the end");
   }
 
   void add_schema() {

@@ -85,15 +85,16 @@ void write_page_of(const std::vector<fs::path>& folders, const fs::path& file, b
 
 int report(const ReportOptions& options) {
   fs::path file = options.output;
-  if (file.empty())
-    file = options.folders.size() == 1 ? ResultFolder::open(options.folders.front()).report()
-                                       : fs::path("report.html");
+  if (file.empty()) file = options.folders.size() == 1 ? options.folders.front() / kReportFile : kReportFile;
   write_page_of(options.folders, file, options.force, stdout);
   return kDone;
 }
 
-void write_report(const fs::path& folder) {
-  write_page_of({folder}, ResultFolder::open(folder).report(), false, stderr);
+int report_after(const std::vector<fs::path>& results, const fs::path& folder) {
+  return guarded([&] {
+    write_page_of(results, folder / kReportFile, false, stderr);
+    return kDone;
+  });
 }
 
 }  // namespace riven::app

@@ -26,14 +26,6 @@ std::string resume_command(const Options& options) {
   return command;
 }
 
-/// The page of what a run left, however it ended.
-int report_after(const fs::path& folder) {
-  return guarded([&] {
-    write_report(folder);
-    return kDone;
-  });
-}
-
 }  // namespace
 
 int run(const Options& options) {
@@ -50,7 +42,7 @@ int run(const Options& options) {
                                            .resume = options.resume,
                                            .resume_command = resume_command(options),
                                            .case_name = case_name(file)});
-  const int reported = options.report ? report_after(folder) : kDone;
+  const int reported = options.report ? report_after({folder}, folder) : kDone;
   if (summary.status == RunStatus::interrupted) return kInterrupted;
   return summary.status == RunStatus::finished ? reported : kFailed;
 }

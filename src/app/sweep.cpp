@@ -208,6 +208,7 @@ std::string resume_command(const SweepOptions& options, const fs::path& folder) 
   for (const std::string& set : options.set) command += fmt::format(" --set {}", shell_word(set));
   command += fmt::format(" -o {} -j {}", shell_word(folder.string()), options.jobs);
   if (options.threads > 0) command += fmt::format(" --threads {}", options.threads);
+  if (options.report) command += " --report";
   return command + " --resume";
 }
 
@@ -215,6 +216,14 @@ int exit_code(const SweepResults& results) {
   const bool all = std::all_of(results.outcomes.begin(), results.outcomes.end(),
                                [](const SweepOutcome& outcome) { return outcome.status == "finished"; });
   return all ? kDone : kFailed;
+}
+
+/// Folders of the variants that have something to show.
+std::vector<fs::path> reached(const SweepResults& results) {
+  std::vector<fs::path> folders;
+  for (std::size_t n = 0; n < results.outcomes.size(); ++n)
+    if (results.outcomes[n].summary) folders.push_back(results.folder / results.plan.variants[n].name);
+  return folders;
 }
 
 }  // namespace
@@ -232,12 +241,13 @@ int sweep(const SweepOptions& options) {
   write_sweep_csv(results);
   const bool drawn = draw_sweep(results);
   fmt::print("{}", sweep_table(results));
+  const int reported = options.report ? report_after(reached(results), path) : kDone;
   fmt::print(stderr, "results: {}/ (sweep.csv{})\n", path.string(), drawn ? ", sweep.png" : "");
   if (interrupt_requested()) {
     fmt::print(stderr, "warning: interrupted. To go on: {}\n", resume_command(options, path));
     return kInterrupted;
   }
-  return exit_code(results);
+  return reported == kDone ? exit_code(results) : reported;
 }
 
 }  // namespace riven::app

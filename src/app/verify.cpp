@@ -80,8 +80,9 @@ bool may_replace(const fs::path& file, const fs::path& folder, const Options& op
 }
 
 /// Runs one case and prints its table.
-void verify_case(const fs::path& file, const Options& options, bool brief, Verification& found) {
-  const Variant variant = make_variant(file, options, brief);
+void verify_case(const fs::path& file, const Options& options, const VerifyOptions& how,
+                 Verification& found) {
+  const Variant variant = make_variant(file, options, how.brief);
   found.title = variant.input.title;
   found.brief = variant.brief;
   found.unreached = variant.unreached;
@@ -103,14 +104,15 @@ void verify_case(const fs::path& file, const Options& options, bool brief, Verif
   const bool met = std::all_of(found.verdicts.begin(), found.verdicts.end(),
                                [](const Verdict& v) { return v.met || !v.decides; });
   found.code = met ? kDone : kMissed;
+  if (how.gallery) report_after({found.folder}, found.folder);
 }
 
 /// A case that is wrong or fails must not keep the others from being looked at.
-Verification verify_guarded(const fs::path& file, const Options& options, bool brief) {
+Verification verify_guarded(const fs::path& file, const Options& options, const VerifyOptions& how) {
   Verification found{.name = case_name(file), .folder = default_output(file)};
   found.code = guarded([&] {
     try {
-      verify_case(file, options, brief, found);
+      verify_case(file, options, how, found);
     } catch (const std::exception& problem) {
       found.problem = problem.what();
       throw;
@@ -140,7 +142,7 @@ int verify(const Options& options, const VerifyOptions& how) {
   std::vector<Verification> all;
   int worst = kDone;
   for (const fs::path& file : targets(options.target)) {
-    all.push_back(verify_guarded(file, options, how.brief));
+    all.push_back(verify_guarded(file, options, how));
     if (all.back().code == kInterrupted) return kInterrupted;
     worst = std::max(worst, all.back().code);
   }

@@ -59,7 +59,6 @@ class ResultFolder {
   [[nodiscard]] std::filesystem::path energy() const { return current_ / "energy.csv"; }
   [[nodiscard]] std::filesystem::path collection() const { return current_ / "fields.pvd"; }
   [[nodiscard]] std::filesystem::path checkpoint() const { return current_ / "checkpoint.h5"; }
-  [[nodiscard]] std::filesystem::path report() const { return current_ / "report.html"; }
   /// Removes what a killed run left half written, and the field files from output state `states` on.
   void cut_off(int states) const;
   /// Field file of an output state, counted from 0, relative to the folder: "fields/0000.vtu".

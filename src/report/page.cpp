@@ -161,14 +161,14 @@ Json result_json(ReportItem& item, const std::string& unique_name, std::size_t m
           {"view", nullptr}};
 }
 
-/// Names of the cases; where they are equal, with the folder.
+/// Names of the cases; where they are equal, folders.
 std::vector<std::string> unique_names(const std::vector<ReportItem>& items) {
   std::map<std::string, int> uses;
   for (const ReportItem& item : items) ++uses[item.result.name()];
   std::vector<std::string> names;
   for (const ReportItem& item : items) {
     const std::string name = item.result.name();
-    names.push_back(uses[name] == 1 ? name : fmt::format("{} ({})", name, item.result.folder.string()));
+    names.push_back(uses[name] == 1 ? name : item.result.folder.string());
   }
   return names;
 }

@@ -30,6 +30,9 @@ struct ReportItem {
   std::vector<std::string> notes;  // sentences to show beside it
 };
 
+/// Its name, unless the user gives another.
+inline constexpr const char* kReportFile = "report.html";
+
 /// A page never takes more bytes: a browser should open it at once, and a mail carry it.
 constexpr double kLargestPage = 30e6;
 
