@@ -2,12 +2,12 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 
 #include "base/error.hpp"
@@ -48,7 +48,7 @@ ChildRun::ChildRun(const std::vector<std::string>& words, const std::filesystem:
   if (process_ < 0) throw RunError(fmt::format("cannot start a run: {}", std::strerror(problem)));
 }
 
-std::optional<int> ChildRun::ended() {
+std::optional<int> ChildRun::ended() const {
   int status = 0;
   if (::waitpid(process_, &status, WNOHANG) != process_) return std::nullopt;
   constexpr int kSignalled = 128;

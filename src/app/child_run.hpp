@@ -16,7 +16,7 @@ class ChildRun {
   ChildRun(const std::vector<std::string>& words, const std::filesystem::path& log);
 
   /// Its exit code, once it has ended; 128 + the signal that killed it.
-  [[nodiscard]] std::optional<int> ended();
+  [[nodiscard]] std::optional<int> ended() const;
   /// Asks it to stop, once: a second signal would end it without a checkpoint.
   void interrupt();
   [[nodiscard]] double seconds() const;

@@ -32,10 +32,14 @@ void Axes::draw(Canvas& canvas) const {
   const std::vector<double> across = ticks(x, ticks_along(canvas, width)),
                             up = ticks(y, ticks_along(canvas, height));
   const std::vector<std::string> below = tick_texts(across), beside = tick_texts(up);
+  double free = 0;  // right of the last number: where they are too dense, some are left out
   for (std::size_t n = 0; n < across.size(); ++n) {
     const double place = at(across[n], y.low).x;
     if (grid) canvas.segment({place, corner.y}, {place, bottom}, kFaint, u);
     canvas.segment({place, bottom}, {place, bottom + kTick * u}, kBlack, u);
+    const double half = canvas.text_width(below[n], kTextHeight * u) / 2;
+    if (place - half < free) continue;
+    free = place + half + kGap * u;
     canvas.text({place, bottom + (kTick + kGap + 0.75 * kTextHeight) * u}, below[n], kTextHeight * u,
                 Align::centre);
   }

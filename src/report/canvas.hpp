@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cairo.h>
+
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -7,9 +9,6 @@
 #include <vector>
 
 #include "report/colour_map.hpp"
-
-struct _cairo;
-struct _cairo_surface;
 
 namespace riven {
 
@@ -80,8 +79,8 @@ class Canvas {
   double unit_;
   std::string bytes_;
   bool is_png_;
-  std::unique_ptr<_cairo_surface, void (*)(_cairo_surface*)> surface_;
-  std::unique_ptr<_cairo, void (*)(_cairo*)> cairo_;
+  std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)> surface_;
+  std::unique_ptr<cairo_t, void (*)(cairo_t*)> cairo_;
 };
 
 /// Writes a file of a canvas; one that exists is replaced. Throws RunError when it cannot be written.

@@ -105,8 +105,8 @@ Layout arrange(const Shown& shown, bool has_axes, const std::filesystem::path& p
   const double bottom = padding + (has_axes ? room_below(canvas) : 0) + (layout.bar_upwards ? 0 : bar);
   const double wide = settings.size.width - left - right, high = settings.size.height - top - bottom;
   const double scale = std::min(wide / shown.frame.across.width(), high / shown.frame.up.width());
-  axes.width = scale * shown.frame.across.width();
-  axes.height = scale * shown.frame.up.width();
+  axes.width = std::round(scale * shown.frame.across.width());
+  axes.height = std::round(scale * shown.frame.up.width());
 
   double spare_x = wide - axes.width, spare_y = high - axes.height;
   if (settings.trimmed) {
@@ -198,9 +198,8 @@ std::string draw_field(const PointCloud& cloud, const Scalar& scalar, const Pict
   Canvas canvas(layout.size, layout.unit, path);
   draw_title(canvas, settings.title, shown.subtitle);
   Axes& axes = layout.axes;
-  const Raster points =
-      scene.drawn(shown.frame, static_cast<int>(std::lround(axes.width)),
-                  static_cast<int>(std::lround(axes.height)), [&](std::size_t i) { return shown.colour(i); });
+  const Raster points = scene.drawn(shown.frame, static_cast<int>(axes.width), static_cast<int>(axes.height),
+                                    [&](std::size_t i) { return shown.colour(i); });
   canvas.image(axes.corner, points.width, points.height, points);
   if (has_axes) {
     axes.x_label = fmt::format("{} [{}]", "xyz"[scene.projection().axes()[0]], axes.x_label);

@@ -111,7 +111,8 @@ Point Scene::size() const {
 
 Raster Scene::drawn(const Frame& frame, int width, int height,
                     const std::function<Colour(std::size_t)>& colour) const {
-  const ToRaster to{frame, width / frame.across.width()};
+  // The longer side is rounded to whole pixels by the lesser part.
+  const ToRaster to{frame, width > height ? width / frame.across.width() : height / frame.up.width()};
   if (projection_.dimension() == 3) {
     std::vector<Sphere> spheres;
     for (std::size_t i = 0; i < places_.size(); ++i)

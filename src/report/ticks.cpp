@@ -28,10 +28,10 @@ struct Step {
 
 std::vector<double> multiples(const Range& range, const Step& step) {
   constexpr double kSlack = 1e-9;  // ends that are ticks but for rounding
+  const double first = std::ceil(range.low / step.times(1) - kSlack);
+  const double last = std::floor(range.high / step.times(1) + kSlack);
   std::vector<double> all;
-  for (double n = std::ceil(range.low / step.times(1) - kSlack); n <= range.high / step.times(1) + kSlack;
-       ++n)
-    all.push_back(step.times(n));
+  for (int n = 0; first + n <= last; ++n) all.push_back(step.times(first + n));
   return all;
 }
 

@@ -228,6 +228,31 @@ TEST(Picture, IsTrimmedToTheBody) {
   EXPECT_LT(png.height, 400);
 }
 
+// Widths of a few pixels are rounded to whole ones: that must not shift a long body.
+TEST(Picture, ThinBodiesFillTheirAxes) {
+  const Colour body = colour_map("viridis").at(1);
+  for (int columns = 3; columns < 9; ++columns) {
+    PointCloud strip;
+    for (int i = 0; i < columns; ++i)
+      for (int j = 0; j < 97; ++j) strip.positions.push_back({0.01 * i, 0.01 * j, 0});
+    const Scalar scalar{"heat", "", std::vector<double>(strip.positions.size(), 1)};
+    const Png png(draw_field(strip, scalar, kSettings, "x.png"));
+    std::vector<int> rows;
+    int x = 0;
+    for (; rows.size() < 300 && x < png.width; ++x) {
+      rows.clear();
+      for (int y = 0; y < png.height; ++y)
+        if (png.at(x, y) == body) rows.push_back(y);
+    }
+    ASSERT_GT(rows.size(), 300U);
+    // The lines of the frame: dark, and as far above as below.
+    int above = rows.front(), below = rows.back();
+    while (png.at(x, above) == body || png.at(x, above)[0] > 200) --above;
+    while (png.at(x, below) == body || png.at(x, below)[0] > 200) ++below;
+    EXPECT_NEAR(rows.front() - above, below - rows.back(), 1) << columns;
+  }
+}
+
 TEST(Picture, KindsOfFiles) {
   const Plate plate;
   EXPECT_TRUE(draw_field(plate.cloud, plate.scalar, kSettings, "x.svg").find("<svg") != std::string::npos);
