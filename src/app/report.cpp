@@ -18,27 +18,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-VerdictRow row_of(const Verdict& verdict) {
-  return {.what = verdict.what,
-          .unit = verdict.unit,
-          .at = verdict.at,
-          .published = verdict.published,
-          .expected = verdict.expected,
-          .ours = verdict.ours,
-          .deviation = verdict.deviation,
-          .limit = verdict.limit,
-          .outcome = std::string(outcome(verdict)),
-          .source = verdict.source};
-}
-
 /// Holds the case's expectations against the result. What a result cannot answer, one that failed before a
 /// state for example, is only noted.
 void add_verdicts(ReportItem& item) {
   const Case input = read_case(ResultFolder::open(item.result.folder).resolved());
   for (const ExpectInput& expect : input.expects) {
     try {
-      for (const Verdict& verdict : judge(input, {expect}, item.result.folder))
-        item.verdicts.push_back(row_of(verdict));
+      const std::vector<Verdict> verdicts = judge(input, {expect}, item.result.folder);
+      item.verdicts.insert(item.verdicts.end(), verdicts.begin(), verdicts.end());
     } catch (const InputError& problem) {
       item.notes.push_back(fmt::format("Not compared: {}.", problem.what()));
     }

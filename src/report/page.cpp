@@ -82,9 +82,9 @@ Json metrics_json(const Result& result) {
   return metrics;
 }
 
-Json verdicts_json(const std::vector<VerdictRow>& rows) {
+Json verdicts_json(const std::vector<Verdict>& rows) {
   Json verdicts = Json::array();
-  for (const VerdictRow& row : rows)
+  for (const Verdict& row : rows)
     verdicts.push_back({{"what", row.what},
                         {"unit", row.unit},
                         {"at", row.at},
@@ -93,7 +93,7 @@ Json verdicts_json(const std::vector<VerdictRow>& rows) {
                         {"ours", number(row.ours)},
                         {"deviation", number(row.deviation)},
                         {"limit", row.limit},
-                        {"verdict", row.outcome},
+                        {"verdict", outcome(row)},
                         {"source", row.source}});
   return verdicts;
 }

@@ -6,27 +6,16 @@
 #include <vector>
 
 #include "report/result.hpp"
+#include "verification/verdict.hpp"
 
 namespace riven {
 
 /// The report page: one HTML file that shows results, without a network. `web/` has its source.
 
-/// A row of the table of expectations; numbers that a row has not stay empty.
-struct VerdictRow {
-  std::string what;  // metric, or "displacement field"
-  std::string unit;
-  double at = 0;                                    // stretch, time (s) or cycle
-  bool published = false;                           // else a reference
-  std::optional<double> expected, ours, deviation;  // the latter relative
-  std::string limit;                                // "0.5 %", ">= 2"
-  std::string outcome;                              // "ok", "missed", "reported"
-  std::string source;
-};
-
 /// A result as it goes into a page.
 struct ReportItem {
   Result result;
-  std::vector<VerdictRow> verdicts;
+  std::vector<Verdict> verdicts;
   std::vector<std::string> notes;  // sentences to show beside it
 };
 

@@ -136,10 +136,6 @@ std::vector<Verdict> judge(const Case& input, const std::vector<ExpectInput>& ex
   return std::move(judge.verdicts);
 }
 
-std::string_view outcome(const Verdict& verdict) {
-  return !verdict.decides ? "reported" : verdict.met ? "ok" : "missed";
-}
-
 VerdictCells cells(const Verdict& v) {
   const std::string expected = v.expected ? fmt::format("{:.6g}", *v.expected) : v.ours ? "-" : "";
   return {v.unit.empty() ? v.what : v.what + " [" + v.unit + "]",

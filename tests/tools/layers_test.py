@@ -22,7 +22,7 @@ LAYERS = {
     "output": BOTTOM,
     "input": BOTTOM,
     "verification": BOTTOM | {"input", "output"},
-    "report": BOTTOM | {"input", "output"},  # reads results, never models
+    "report": BOTTOM | {"input", "output", "verification"},  # reads results, never models
 }
 LAYERS["simulation"] = set(LAYERS)
 LAYERS["app"] = set(LAYERS)
