@@ -100,14 +100,16 @@ struct Legend {
   }
 
   [[nodiscard]] double height(double unit) const {
-    return static_cast<double>((texts.size() + columns - 1) / columns) * kLine * unit;
+    const std::size_t rows = (texts.size() + columns - 1) / columns;
+    return static_cast<double>(rows) * kLine * unit;
   }
 
   void draw(Canvas& canvas, Pixel corner) const {
     const double u = canvas.unit();
     for (std::size_t n = 0; n < texts.size(); ++n) {
-      const double left = corner.x + static_cast<double>(n % columns) * column_width;
-      const double line = corner.y + (static_cast<double>(n / columns) + 0.5) * kLine * u;
+      const std::size_t row = n / columns, column = n % columns;
+      const double left = corner.x + static_cast<double>(column) * column_width;
+      const double line = corner.y + (static_cast<double>(row) + 0.5) * kLine * u;
       const Style style = style_of(n, u);
       canvas.line(std::array{Pixel{left, line}, Pixel{left + kSample * u, line}}, style.colour, 1.8 * u,
                   style.dashes);

@@ -45,7 +45,7 @@ class Layers {
 
   [[nodiscard]] Raster averaged() const {
     Raster raster{width_ / kFiner, height_ / kFiner, {}};
-    raster.pixels.reserve(size() / (kFiner * kFiner));
+    raster.pixels.reserve(size() / kFiner / kFiner);
     for (int y = 0; y < raster.height; ++y)
       for (int x = 0; x < raster.width; ++x) raster.pixels.push_back(mean(kFiner * x, kFiner * y));
     return raster;
@@ -86,8 +86,8 @@ Colour shaded(Colour colour, double light) {
 Raster raster_of(std::span<const Tile> tiles, bool square, int width, int height) {
   Layers layers(width, height);
   for (const Tile& tile : tiles) {
-    const auto& [xx, xy, yx, yy] = tile.inverse;
     layers.paint(tile.centre, tile.reach, [&](double dx, double dy) {
+      const auto& [xx, xy, yx, yy] = tile.inverse;
       const double x = xx * dx + xy * dy, y = yx * dx + yy * dy;
       const auto& [left, right, lower, upper] = tile.sides;
       const bool inside = square ? -left <= x && x <= right && -lower <= y && y <= upper

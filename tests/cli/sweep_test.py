@@ -127,13 +127,13 @@ class Sweep(SweepTest):
 
 class Stopped(SweepTest):
     def stopped(self, number, words):
-        """Starts a sweep, sends it a signal when its second run has begun; returns exit code and messages."""
+        """Starts a sweep, sends it a signal when its second run has a state; returns exit code and messages."""
         sweep = subprocess.Popen([PROGRAM, *map(str, words)], cwd=self.top, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                  text=True)
         self.addCleanup(sweep.communicate)
         self.addCleanup(sweep.kill)
         end = time.monotonic() + 60
-        while len(list((self.top / "out").glob("*/history.csv"))) < 2:
+        while len(list((self.top / "out").glob("*/fields.pvd"))) < 2:
             self.assertIsNone(sweep.poll(), "the sweep ended by itself")
             self.assertLess(time.monotonic(), end)
             time.sleep(0.005)
