@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <string_view>
 
 #include "base/error.hpp"
 
@@ -17,7 +18,7 @@ namespace riven::app {
 namespace {
 
 /// Becomes the program. Between fork and exec only what is safe in a program with threads: system calls.
-[[noreturn]] void become(const char* program, char* const* words, int log, pid_t parent) {
+[[noreturn]] void become(char* const* words, int log, pid_t parent) {
   // Its own group: an interrupt from the keyboard reaches the sweep alone, which passes it on. And a sweep
   // that is killed leaves no runs behind; posix_spawn could not arrange for that.
   ::setpgid(0, 0);
@@ -25,14 +26,16 @@ namespace {
   if (::getppid() != parent) ::_exit(1);
   ::dup2(log, STDOUT_FILENO);
   ::dup2(log, STDERR_FILENO);
-  ::execv(program, words);
+  // By this name a program that was replaced meanwhile still starts.
+  ::execv("/proc/self/exe", words);
+  constexpr std::string_view kProblem = "error: cannot start the program again\n";
+  static_cast<void>(!::write(STDERR_FILENO, kProblem.data(), kProblem.size()));
   ::_exit(1);
 }
 
 }  // namespace
 
 ChildRun::ChildRun(const std::vector<std::string>& words, const std::filesystem::path& log) {
-  const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
   std::vector<std::string> texts{"riven"};
   texts.insert(texts.end(), words.begin(), words.end());
   std::vector<char*> pointers;
@@ -42,7 +45,7 @@ ChildRun::ChildRun(const std::vector<std::string>& words, const std::filesystem:
   if (output < 0) throw RunError(fmt::format("cannot write {}: {}", log.string(), std::strerror(errno)));
   const pid_t parent = ::getpid();
   process_ = ::fork();
-  if (process_ == 0) become(program.c_str(), pointers.data(), output, parent);
+  if (process_ == 0) become(pointers.data(), output, parent);
   const int problem = errno;
   ::close(output);
   if (process_ < 0) throw RunError(fmt::format("cannot start a run: {}", std::strerror(problem)));

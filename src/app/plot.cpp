@@ -9,6 +9,7 @@
 #include "input/formula.hpp"
 #include "report/chart.hpp"
 #include "report/picture.hpp"
+#include "report/projection.hpp"
 #include "report/result.hpp"
 #include "report/what_to_show.hpp"
 
@@ -90,7 +91,8 @@ void unify(PictureSettings& settings, const Result& result, const std::vector<st
   Range values;
   for (const std::size_t n : states) {
     const PointCloud cloud = read_vtu(result.states[n].file);
-    values.include(colour_range(scalar_of(cloud, field)));
+    const bool is_curve = Projection(cloud.positions).dimension() == 1;
+    values.include(colour_range(scalar_of(cloud, field), is_curve));
     settings.frame.include(frame_of(cloud, settings.scale));
   }
   if (settings.values.empty()) settings.values = values;

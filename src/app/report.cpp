@@ -47,6 +47,8 @@ std::vector<ReportItem> read_items(const std::vector<fs::path>& folders) {
 void check_replaceable(const fs::path& file, bool force) {
   if (fs::is_directory(file))
     throw InputError(fmt::format("{}: is a folder, expected a file", file.string()));
+  if (fs::exists(file) && !fs::is_regular_file(file))
+    throw InputError(fmt::format("{}: is a device, expected a file", file.string()));
   const fs::path folder = fs::absolute(file).parent_path();
   if (!fs::is_directory(folder))
     throw InputError(
@@ -59,8 +61,8 @@ void check_replaceable(const fs::path& file, bool force) {
 
 /// Writes the page of these results to `file`, and what it left out.
 void write_page_of(const std::vector<fs::path>& folders, const fs::path& file, bool force, std::FILE* tell) {
-  check_replaceable(file, force);
   std::vector<ReportItem> items = read_items(folders);
+  check_replaceable(file, force);
   write_page(file, items);
   fmt::print(tell, "wrote {} ({})\n", file.string(), bytes_text(static_cast<double>(fs::file_size(file))));
   for (const ReportItem& item : items)

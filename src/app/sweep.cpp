@@ -38,7 +38,7 @@ std::string toml_list(const std::vector<std::string>& texts) {
   return "[" + list + "]";
 }
 
-/// What decides what a sweep runs.
+/// What decides what a sweep runs. The checksum is last: a difference that can be named is.
 std::string mark_text(const SweepPlan& plan, const SweepOptions& options) {
   std::string text =
       fmt::format("case = {}\nset = {}\n", nlohmann::json(fs::absolute(plan.file).string()).dump(),
@@ -46,7 +46,7 @@ std::string mark_text(const SweepPlan& plan, const SweepOptions& options) {
   for (const SweptKey& key : plan.keys)
     text += fmt::format("\n[[key]]\nname = {}\nvalues = {}\n", nlohmann::json(key.name).dump(),
                         toml_list(key.values));
-  return text;
+  return text + fmt::format("\n[case_values]\nchecksum = \"{:08x}\"\n", plan.checksum);
 }
 
 /// A sweep that goes on runs what it ran before.
@@ -174,7 +174,8 @@ class SweepRuns {
     if (ended_ < count && !interrupt_requested())
       line += fmt::format(", about {} left", duration_text(since_start() / static_cast<double>(ended_) *
                                                            static_cast<double>(count - ended_)));
-    if (code == kDone && outcome.summary) line += fmt::format(": {}", metrics_text(outcome.summary->metrics));
+    if (code == kDone && outcome.summary && !outcome.summary->metrics.empty())
+      line += fmt::format(": {}", metrics_text(outcome.summary->metrics, results_.plan));
     if (outcome.status == "failed") line += fmt::format(": {}", last_words(of.variant));
     fmt::print(stderr, "{}\n", line);
     std::error_code ignored;
@@ -240,6 +241,7 @@ int sweep(const SweepOptions& options) {
   const SweepResults& results = runs.run();
   write_sweep_csv(results);
   const bool drawn = draw_sweep(results);
+  if (!drawn) fs::remove(path / "sweep.png");  // of the runs before
   fmt::print("{}", sweep_table(results));
   const int reported = options.report ? report_after(reached(results), path) : kDone;
   fmt::print(stderr, "results: {}/ (sweep.csv{})\n", path.string(), drawn ? ", sweep.png" : "");

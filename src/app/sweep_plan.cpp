@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <charconv>
@@ -17,6 +18,7 @@
 #include "input/case_values.hpp"
 #include "simulation/estimate.hpp"
 #include "simulation/preflight.hpp"
+#include "simulation/resume.hpp"
 
 namespace riven::app {
 
@@ -167,6 +169,11 @@ SweepPlan plan_sweep(const SweepOptions& options) {
     const Case input = case_of(plan.file, variant);
     for (const SweptKey& key : plan.keys) variant.si.push_back(value_in_si(input, key.name));
     needs.push_back(memory_estimate(input));
+    for (const auto& [key, value] : decisive_values(input)) {
+      const std::string line = key + "=" + value + "\n";
+      plan.checksum =
+          ::crc32(plan.checksum, reinterpret_cast<const Bytef*>(line.data()), static_cast<uInt>(line.size()));
+    }
   });
   check_side_by_side(std::move(needs), static_cast<std::size_t>(options.jobs));
   for_each_checked(plan, [&](SweepVariant& variant) {

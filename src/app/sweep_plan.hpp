@@ -39,7 +39,8 @@ struct SweepVariant {
 
 struct SweepPlan {
   std::filesystem::path file;
-  std::string title;  // of the case
+  std::string title;           // of the case
+  unsigned long checksum = 0;  // of all values that decide what the variants give
   std::vector<SweptKey> keys;
   std::vector<SweepVariant> variants;
   std::vector<HistoryColumn> first_probe;  // metrics of the case's first probe

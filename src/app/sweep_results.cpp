@@ -28,13 +28,24 @@ std::string with_unit(const std::string& name, const std::string& unit) {
   return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
 }
 
-/// The metrics of all variants, with their units.
-std::map<std::string, std::string> metric_units(const SweepResults& results) {
-  std::map<std::string, std::string> units;
+/// Metrics in the order in which they are told: those of the case's first probe, then the others.
+std::vector<HistoryColumn> in_order(const Metrics& metrics, const SweepPlan& plan) {
+  std::vector<HistoryColumn> columns;
+  for (const HistoryColumn& first : plan.first_probe)
+    if (metrics.contains(first.name)) columns.push_back(first);
+  for (const auto& [name, metric] : metrics)
+    if (std::none_of(plan.first_probe.begin(), plan.first_probe.end(),
+                     [&, &name = name](const HistoryColumn& first) { return first.name == name; }))
+      columns.push_back({name, metric.unit});
+  return columns;
+}
+
+/// The metrics of all variants.
+std::vector<HistoryColumn> metric_columns(const SweepResults& results) {
+  Metrics all;
   for (const SweepOutcome& outcome : results.outcomes)
-    if (outcome.summary)
-      for (const auto& [name, metric] : outcome.summary->metrics) units[name] = metric.unit;
-  return units;
+    if (outcome.summary) all.insert(outcome.summary->metrics.begin(), outcome.summary->metrics.end());
+  return in_order(all, results.plan);
 }
 
 double metric_of(const SweepOutcome& outcome, const std::string& name) {
@@ -126,19 +137,20 @@ Chart chart_of_histories(const SweepResults& results) {
 
 }  // namespace
 
-std::string metrics_text(const Metrics& metrics) {
+std::string metrics_text(const Metrics& metrics, const SweepPlan& plan) {
   std::vector<std::string> parts;
-  for (const auto& [name, metric] : metrics) {
+  for (const auto& [name, unit] : in_order(metrics, plan)) {
     if (parts.size() == kMostMetrics) break;
-    parts.push_back(fmt::format("{} {}", name, readable(metric.value, metric.unit)));
+    parts.push_back(fmt::format("{} {}", name, readable(metrics.at(name).value, unit)));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 std::string sweep_table(const SweepResults& results) {
   const SweepPlan& plan = results.plan;
-  auto metrics = metric_units(results);
-  while (metrics.size() > kMostMetrics) metrics.erase(std::prev(metrics.end()));
+  std::vector<HistoryColumn> metrics = metric_columns(results);
+  const std::size_t more = metrics.size() - std::min(metrics.size(), kMostMetrics);
+  metrics.resize(metrics.size() - more);
   std::vector<Row> rows(1);
   for (const SweptKey& key : plan.keys) rows[0].push_back(key.name);
   rows[0].emplace_back("status");
@@ -154,12 +166,14 @@ std::string sweep_table(const SweepResults& results) {
     row.push_back(outcome.summary ? duration_text(wall_s(outcome)) : "");
     rows.push_back(std::move(row));
   }
-  return aligned(rows, plan.keys.size() + 1);
+  const std::string left_out =
+      more > 0 ? fmt::format("{} in sweep.csv\n", count_text(static_cast<double>(more), "more metric")) : "";
+  return aligned(rows, plan.keys.size() + 1) + left_out;
 }
 
 void write_sweep_csv(const SweepResults& results) {
   const SweepPlan& plan = results.plan;
-  const auto metrics = metric_units(results);
+  const std::vector<HistoryColumn> metrics = metric_columns(results);
   Row header;
   std::vector<std::optional<std::vector<SiValue>>> si;
   for (std::size_t k = 0; k < plan.keys.size(); ++k) {

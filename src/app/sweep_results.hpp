@@ -24,7 +24,7 @@ struct SweepResults {
 };
 
 /// The first metrics of a state in one line: "force_x 220.9 N, hole_x 1.43".
-std::string metrics_text(const Metrics& metrics);
+std::string metrics_text(const Metrics& metrics, const SweepPlan& plan);
 
 /// The table on the screen: keys, status, the first metrics, wall time.
 std::string sweep_table(const SweepResults& results);

@@ -22,9 +22,10 @@ constexpr std::size_t kFewPoints = 30;  // that get marks
 /// A range with room beyond the values, so that lines do not run along the frame.
 Range roomy(Range range) {
   if (range.empty()) return {0, 1};
+  if (range.low == 0 && range.high == 0) return {-1, 1};
   const double wider = range.width() > 1e-9 * std::max(std::abs(range.low), std::abs(range.high))
                            ? 0.04 * range.width()
-                           : std::max(0.1 * std::abs(range.low), 1e-300);
+                           : 0.1 * std::abs(range.low);
   return {range.low - wider, range.high + wider};
 }
 

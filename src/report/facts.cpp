@@ -37,7 +37,7 @@ void add_energies(const EnergySummary& energy, std::vector<Fact>& facts) {
   add("kinetic energy", energy.kinetic);
   add("strain energy", energy.strain);
   add("dissipated energy", energy.dissipated);
-  add("work of the loads", energy.external_work);
+  add("initial energy and work of the loads", energy.external_work);
   if (std::isfinite(energy.balance_error))
     facts.push_back({"error of the energy balance", fmt::format("{:.1e}", energy.balance_error)});
 }

@@ -15,13 +15,13 @@
 #include "base/embedded.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "input/table_function.hpp"
 #include "output/atomic_file.hpp"
 #include "output/checkpoint.hpp"
 #include "output/result_folder.hpp"
 #include "report/colour_map.hpp"
 #include "report/facts.hpp"
 #include "report/packed.hpp"
+#include "report/ticks.hpp"
 #include "report/view.hpp"
 
 namespace riven {
@@ -100,9 +100,7 @@ Json verdicts_json(const std::vector<Verdict>& rows) {
 
 /// A column of a CSV file of Riven: "force [N]".
 Json column_json(const std::string& column) {
-  const std::string name = without_unit(column);
-  std::string unit = column.substr(name.size());
-  std::erase_if(unit, [](char c) { return c == '[' || c == ']' || c == ' '; });
+  const auto [name, unit] = name_and_unit(column);
   return {{"name", name}, {"unit", unit}};
 }
 
@@ -173,19 +171,36 @@ std::vector<std::string> unique_names(const std::vector<ReportItem>& items) {
   return names;
 }
 
+/// What `work` gives, without the states that turn out to be unusable; `none` when no state is left.
+template <class Value, class Work>
+Value of_usable_states(ReportItem& item, Value none, const Work& work) {
+  while (!item.result.states.empty()) {
+    try {
+      return work();
+    } catch (const UnusableState& problem) {
+      item.notes.push_back(fmt::format("The state at {:.6g} is left out: {}.",
+                                       item.result.states[problem.state].value, problem.what()));
+      item.result.states.erase(item.result.states.begin() + static_cast<std::ptrdiff_t>(problem.state));
+    }
+  }
+  return none;
+}
+
 /// Puts the fields of all results into what they leave of the page.
 void add_views(Json& page, std::vector<ReportItem>& items, double room) {
   constexpr double kMargin = 1.1;  // a need is an estimate
   std::vector<ViewSize> sizes;
   std::vector<double> needs;
-  for (const ReportItem& item : items) {
-    sizes.push_back(item.result.states.empty() ? ViewSize() : measured(item.result));
+  for (ReportItem& item : items) {
+    sizes.push_back(of_usable_states(item, ViewSize(), [&] { return measured(item.result); }));
     needs.push_back(kMargin * sizes.back().bytes(sizes.back().all));
   }
   const std::vector<double> parts = shares(needs, room);
   for (std::size_t n = 0; n < items.size(); ++n)
-    if (!items[n].result.states.empty())
-      page["results"][n]["view"] = view(items[n].result, sizes[n], parts[n], items[n].notes);
+    page["results"][n]["view"] = of_usable_states(items[n], Json(), [&] {
+      sizes[n].all.states = items[n].result.states.size();
+      return view(items[n].result, sizes[n], parts[n], items[n].notes);
+    });
 }
 
 Json page_json(std::vector<ReportItem>& items, double largest) {

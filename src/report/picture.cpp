@@ -58,7 +58,8 @@ std::string subtitle(const Scene& scene, const PictureSettings& settings) {
 }
 
 Shown decide(const Scene& scene, const Scalar& scalar, const PictureSettings& settings) {
-  const Range shown = settings.values.empty() ? colour_range(scalar) : settings.values;
+  const bool is_curve = scene.projection().dimension() == 1;  // which shows all values
+  const Range shown = settings.values.empty() ? colour_range(scalar, is_curve) : settings.values;
   const ColourMap& map = settings.map != nullptr ? *settings.map : natural_map(shown);
   Frame frame = settings.frame.across.empty() ? scene.frame() : settings.frame;
   // A flat body has no height of its own, and one point no size at all.

@@ -81,7 +81,11 @@ void Range::include(const Range& other) {
 
 std::vector<double> ticks(const Range& range, int most) {
   if (range.empty()) return {};
-  if (range.width() <= 0) return {range.low};
+  // What is all but one value, or wider than any number, has no steps.
+  constexpr double kNarrowest = 1e-290, kRounding = 1e-12;
+  const double largest = std::max(std::abs(range.low), std::abs(range.high));
+  if (!(range.width() > std::max(kNarrowest, kRounding * largest)) || !std::isfinite(range.width()))
+    return {range.low};
   Step step{1, static_cast<int>(std::ceil(std::log10(range.width()))) + 1};
   while (multiples(range, step.smaller()).size() <= static_cast<std::size_t>(std::max(most, 2)))
     step = step.smaller();

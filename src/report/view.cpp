@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "report/packed.hpp"
+#include "report/what_to_show.hpp"
 
 namespace riven {
 
@@ -30,7 +31,17 @@ class States {
  public:
   explicit States(const Result& result) : result_(result) {}
 
+  /// Throws UnusableState.
   PointCloud read(std::size_t state) {
+    try {
+      return read_one(state);
+    } catch (const InputError& problem) {
+      throw UnusableState(state, problem.what());
+    }
+  }
+
+ private:
+  PointCloud read_one(std::size_t state) {
     const std::filesystem::path& file = result_.states[state].file;
     PointCloud cloud = read_vtu(file);
     std::stable_partition(cloud.fields.begin(), cloud.fields.end(),
@@ -49,7 +60,6 @@ class States {
     return cloud;
   }
 
- private:
   const Result& result_;
   PointCloud layout_;
 };
@@ -96,7 +106,7 @@ bool is_flat(const PointCloud& cloud) {
   if (cloud.fields.empty() || cloud.fields.front().name != "displacement") return true;
   const std::vector<double>& u = cloud.fields.front().values;
   for (std::size_t z = 2; z < u.size(); z += 3)
-    if (u[z] != 0) return false;
+    if (std::abs(u[z]) > 0) return false;  // not so for NaN
   return true;
 }
 
@@ -139,10 +149,18 @@ Choice choose(const Result& result, States& states, const ViewSize& size, double
   return choice;
 }
 
+/// Only what `telling_field` asks of a first state.
+PointCloud damage_of(const PointCloud& cloud) {
+  PointCloud damage;
+  if (const PointField* field = find_field(cloud, "damage")) damage.fields.push_back(*field);
+  return damage;
+}
+
 Json pack(const Result& result, States& states, const Choice& choice) {
   Json view = {
       {"points", choice.points.points.size()}, {"spacing", choice.points.cell}, {"states", Json::array()}};
   bool flat = true;
+  PointCloud first;
   for (const std::size_t state : choice.states) {
     const PointCloud cloud = states.read(state);
     if (view["states"].empty()) {
@@ -150,7 +168,9 @@ Json pack(const Result& result, States& states, const Choice& choice) {
       view["positions"] = packed_positions(cloud, choice.points.points);
       view["cells"] = packed_cells(cloud);
       view["fields"] = described_fields(cloud);
+      first = damage_of(cloud);
     }
+    if (state == choice.states.back() && !cloud.fields.empty()) view["field"] = telling_field(cloud, first);
     flat = flat && is_flat(cloud);
     view["states"].push_back(
         {{"value", result.states[state].value}, {"values", packed_fields(cloud, choice.points.points)}});

@@ -62,8 +62,8 @@ Range range_of(const std::vector<double>& values) {
   return range;
 }
 
-Range colour_range(const Scalar& scalar) {
-  const Range values = typical_range(scalar);
+Range colour_range(const Scalar& scalar, bool all_values) {
+  const Range values = all_values ? range_of(scalar.values) : typical_range(scalar);
   const double largest = values.empty() ? 0 : std::max(std::abs(values.low), std::abs(values.high));
   if (largest == 0) return {0, 1};
   if (of_both_signs(values)) return {-largest, largest};

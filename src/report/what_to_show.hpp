@@ -23,7 +23,7 @@ Range range_of(const std::vector<double>& values);
 
 /// The range of colours of a field: its values, without the outermost points if a few of them would leave one
 /// colour for all others. A field of both signs is shown from -a to a, a constant one from 0.
-Range colour_range(const Scalar& scalar);
+Range colour_range(const Scalar& scalar, bool all_values = false);
 
 /// The map of a range: one with a middle of its own for values of both signs.
 const ColourMap& natural_map(const Range& colours);

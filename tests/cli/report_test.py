@@ -296,7 +296,7 @@ class Files(ReportTest):
         done = self.command("report", "a", "b/a", "c")
         self.assertRegex(done.stdout, r"^wrote report\.html \(\d+ (kB|MB)\)\n$")
         results = self.page("report.html")["results"]
-        self.assertEqual([result["name"] for result in results], ["sheet (a)", "sheet (b/a)", "moving"])
+        self.assertEqual([result["name"] for result in results], ["a", "b/a", "moving"])
         for result, folder in zip(results, ("a", "b/a", "c")):
             self.assert_view(result["view"], self.top / folder)
         self.assertIn("b/../a: is named twice", self.refused("report", "a", "b/../a"))
@@ -332,13 +332,38 @@ class Files(ReportTest):
 
     def test_damaged_results(self):
         self.command("run", self.write("sheet.toml", PLAIN), "-o", "out")
-        for name in ("fields/0001.vtu", "fields.pvd", "summary.json", "history.csv", "energy.csv"):
+        for name in ("fields.pvd", "summary.json", "history.csv", "energy.csv"):
             path = self.top / "out" / name
             good = path.read_bytes()
             path.write_bytes(good[:len(good) // 3] + b'\n"' + good[len(good) // 3:len(good) // 2] + b"\n")
             self.assertIn(f"out/{name}", self.refused("report", "out"))
             path.write_bytes(good)
         self.command("report", "out")
+
+    def test_a_damaged_state_is_left_out(self):
+        self.command("run", self.write("sheet.toml", PLAIN), "-o", "out")
+        whole = series(self.top / "out")
+        path = self.top / "out" / "fields/0001.vtu"
+        path.write_bytes(path.read_bytes()[:1000])
+        said = self.command("report", "out").stdout
+        self.assertIn("The state at 1.4 is left out: ", said)
+        self.assertIn("out/fields/0001.vtu", said)
+        result = self.page("out/report.html")["results"][0]
+        self.assertEqual([state["value"] for state in result["view"]["states"]],
+                         [value for value, file in whole if file != path])
+        self.assertIn("out/fields/0001.vtu", " ".join(result["notes"]))
+        for _, file in whole:
+            file.unlink()
+        self.command("report", "out")
+        self.assertIsNone(self.page("out/report.html")["results"][0]["view"])
+
+    def test_the_page_shows_first_what_riven_plot_shows(self):
+        self.command("run", self.write("torn.toml", TORN), "-o", "torn", "--report")
+        self.assertEqual(self.page("torn/report.html")["results"][0]["view"]["field"], "damage")
+        # Bonds that the crack cut from the start are no news.
+        calm = self.write("calm.toml", replaced(TORN, "500 /s", "0.5 /s"))
+        self.command("run", calm, "-o", "calm", "--report")
+        self.assertEqual(self.page("calm/report.html")["results"][0]["view"]["field"], "strain_energy_density")
 
     def test_a_full_disk(self):
         self.command("run", self.write("sheet.toml", PLAIN), "-o", "out", "--report")

@@ -123,6 +123,9 @@ class Sweep(SweepTest):
                       self.refused("sweep", case, "geometry.horizon=3 dx", "-o", "out", "--set", "solver.stretch=[1.1]",
                                    "--resume"))
         self.assertIn("holds another sweep", self.refused("sweep", case, "geometry.horizon=2 dx", "-o", "out", "--resume"))
+        # The case was edited: its results are not those of the sweep any more.
+        self.write("sheet.toml", replaced(SMALL, "points = [14, 14]", "points = [12, 12]"))
+        self.assertIn("holds another sweep (was checksum = ", self.refused(*words, "--resume"))
 
 
 class Stopped(SweepTest):
