@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <numeric>
@@ -203,6 +204,9 @@ PointCloud read_grid(const pugi::xml_node& file) {
 
   const PointField positions = read_field(child(child(piece, "Points"), "DataArray"), points);
   if (positions.components != 3) throw std::runtime_error("its points do not have 3 components");
+  if (!std::all_of(positions.values.begin(), positions.values.end(),
+                   [](double x) { return std::isfinite(x); }))
+    throw std::runtime_error("its points are not all at finite places");
   PointCloud cloud;
   cloud.positions.resize(points);
   for (std::size_t i = 0; i < points; ++i) {

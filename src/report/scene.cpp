@@ -1,8 +1,11 @@
 #include "report/scene.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.hpp"
 #include "report/point_raster.hpp"
 #include "report/what_to_show.hpp"
 
@@ -12,9 +15,12 @@ namespace {
 
 std::vector<Point> displaced(const PointCloud& cloud, double scale) {
   std::vector<Point> places = cloud.positions;
-  if (const PointField* u = find_field(cloud, "displacement"))
-    for (std::size_t i = 0; i < places.size(); ++i)
-      for (std::size_t a = 0; a < 3; ++a) places[i][a] += scale * u->values[3 * i + a];
+  const PointField* u = find_field(cloud, "displacement");
+  if (u == nullptr) return places;
+  if (u->components != 3)
+    throw InputError(fmt::format("field \"displacement\" has {} components; expected 3", u->components));
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t a = 0; a < 3; ++a) places[i][a] += scale * u->values[3 * i + a];
   return places;
 }
 

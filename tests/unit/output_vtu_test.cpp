@@ -221,6 +221,17 @@ TEST(Vtu, RefusesANumberOfPointsThatTheDataDoesNotHave) {
   }
 }
 
+TEST(Vtu, RefusesPointsAtNoPlace) {
+  const Scratch scratch;
+  for (const double nowhere :
+       {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
+    PointCloud cloud = random_cloud(4, 1);
+    cloud.positions[2][1] = nowhere;
+    write_vtu(scratch / "a.vtu", cloud);
+    EXPECT_NE(message_of<InputError>([&] { read_vtu(scratch / "a.vtu"); }).find("finite"), std::string::npos);
+  }
+}
+
 TEST(VtkArray, HeaderStatesBlocksAsVtkReadsThem) {
   // 3 zero bytes: one block of 32768, the last one of 3 bytes. Base64 of the 64-bit words 1, 32768, 3 is
   // known.

@@ -117,6 +117,16 @@ TEST(Picture, PointsStandAtTheirDeformedPlaces) {
   }
 }
 
+TEST(Picture, RefusesDisplacementsThatAreNoVectors) {
+  Plate plate;
+  plate.cloud.fields[0].components = 1;
+  plate.cloud.fields[0].values.resize(plate.cloud.positions.size());
+  EXPECT_NE(message_of<InputError>([&] {
+              draw_field(plate.cloud, plate.scalar, kSettings, "x.png");
+            }).find("1 components; expected 3"),
+            std::string::npos);
+}
+
 TEST(Picture, NoGapsBetweenCells) {
   const Plate plate;
   const Png png(draw_field(plate.cloud, plate.scalar, kSettings, "x.png"));
