@@ -79,6 +79,7 @@ export interface ViewData {
   positions: Packed;
   cells: Cells[];
   fields: Field[];
+  field?: string; // what the program would show first
   states: { value: number; values: Packed[] }[];
 }
 

@@ -101,8 +101,13 @@ export class Panel {
       height: this.frame.clientHeight,
       inset: insetFor(this.dimension),
       plane: flat ? { x: [x - wide, x + wide], y: [y - half, y + half] } : null,
-      triad: flat ? null : { axes: this.screenAxes(), size: sizeOf(this.bounds) },
+      triad: flat ? null : { axes: this.screenAxes(), size: this.bodySize() },
     };
+  }
+
+  /** The bounds are those of the points' centres: the outermost cells reach half a spacing further. */
+  private bodySize(): Vector {
+    return sizeOf(this.bounds).map((length) => length + this.view.spacing) as Vector;
   }
 
   private screenAxes(): [number, number, number][] {

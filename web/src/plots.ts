@@ -36,7 +36,9 @@ export class Plots {
 
   private add(name: string, tables: Table[]): void {
     const columns = allColumns(tables);
-    for (const { title, chosen, files } of plotsOf(name, columns)) {
+    // A model without an energy balance has a column of it that is empty.
+    const filled = (c: number) => tables.some(({ history, columns: values }) => values[history.columns.findIndex((column) => column.name === columns[c]!.name)]?.some(Number.isFinite));
+    for (const { title, chosen, files } of plotsOf(name, columns).filter((plan) => plan.chosen.some(filled))) {
       const card = new PlotCard(title, tables, columns, chosen, files, this.shown);
       this.cards.push(card);
       this.element.append(card.element);

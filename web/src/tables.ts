@@ -22,7 +22,10 @@ const resultColumns = (results: ResultData[], single: string): string[] => (resu
 
 export function metricsTable(results: ResultData[]): HTMLElement {
   const names = allNames(results.map((r) => r.metrics.map((m) => m.name)));
-  if (names.length === 0) return h("p", { class: "quiet" }, "This result has no metrics: its case has no probes.");
+  if (names.length === 0) {
+    const reached = results.some((r) => r.histories.some((history) => history.rows > 0));
+    return h("p", { class: "quiet" }, reached ? "There are no metrics: no probe was asked for." : "There are no metrics: no state was reached.");
+  }
   const rows = names.map((name): Cell[] => [
     { text: words(name) },
     ...results.map(({ metrics }): Cell => {

@@ -115,12 +115,15 @@ export class View {
 
   // --- what is shown -------------------------------------------------------------------------------------------
 
-  /** The field that says most at first sight: damage if there is any, else energy, else the first one. */
+  /** The field that says most at first sight: the program's choice, else damage if there is any, else energy. */
   private async chooseField(): Promise<void> {
     const has = (name: string) => this.fields.some((f) => f.name === name);
     let name = this.fields[0]?.name ?? "";
     if (has("strain_energy_density")) name = "strain_energy_density";
     if (has("damage") && (await this.rangeAtLast("damage"))[1] > 0) name = "damage";
+    const told = this.panels.map(({ view }) => view.field);
+    const choice = told.includes("damage") ? "damage" : told[0];
+    if (choice !== undefined && has(choice)) name = choice;
     this.settings.field = name;
     this.settings.component = this.field?.components === 1 ? 0 : "magnitude";
   }
