@@ -223,6 +223,24 @@ TEST(Picture, OfABarIsACurve) {
   }
 }
 
+// A peak that few points have is what one looks for in a curve; colours alone leave it out.
+TEST(Picture, ACurveShowsItsHighestPoint) {
+  PointCloud cloud;
+  Scalar scalar{"u", "m", {}};
+  for (int i = 0; i < 2001; ++i) {
+    cloud.positions.push_back({0.01 * i, 0, 0});
+    scalar.values.push_back(i == 1000 ? 1 : 0.001 * (i % 7));
+  }
+  const Png png(draw_field(cloud, scalar, kSettings, "x.png"));
+  int coloured = 0;  // pixels in the upper fifth
+  for (int y = 75; y < 170; ++y)
+    for (int x = 110; x < 760; ++x) {
+      const auto [red, green, blue] = png.at(x, y);
+      if (std::max({red, green, blue}) - std::min({red, green, blue}) > 60) ++coloured;
+    }
+  EXPECT_GT(coloured, 2);
+}
+
 TEST(Picture, IsTrimmedToTheBody) {
   PointCloud strip;
   Scalar scalar{"heat", "", {}};

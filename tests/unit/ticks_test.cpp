@@ -49,6 +49,12 @@ TEST(Ticks, OfAnyRange) {
   }
 }
 
+TEST(Ticks, ARangeWithoutStepsHasOne) {
+  for (const Range& range : {Range{0, 0}, Range{0, 1e-320}, Range{0, 5e-324}, Range{1, 1 + 2.3e-16},
+                             Range{-1e308, 1e308}, Range{1e300, 1e300 * (1 + 1e-15)}})
+    EXPECT_EQ(ticks(range, 8), std::vector<double>{range.low});
+}
+
 TEST(Ticks, HaveTheDecimalsThatTheyNeed) {
   EXPECT_EQ(tick_texts({0, 0.5, 1}), (std::vector<std::string>{"0.0", "0.5", "1.0"}));
   EXPECT_EQ(tick_texts({-200, 0, 200}), (std::vector<std::string>{"-200", "0", "200"}));
