@@ -8,6 +8,8 @@ import { colour, FONT, theme } from "./theme";
 import { powerOfTen, pretty, scaleFor, tickLabels, withUnit } from "./units";
 
 export interface ChartOptions {
+  /** Of the y axis, where the names of its lines have no word in common. */
+  title: string;
   xTitle: string;
   xUnit: string;
   logX: boolean;
@@ -123,7 +125,7 @@ export class Chart {
 
   private yAxis(unit: string, k: number): uPlot.Axis {
     const names = [...new Set(this.lines.filter((line) => line.unit === unit).map((line) => line.name))];
-    const title = names.length <= 2 ? names.map(words).join(", ") : commonWord(names);
+    const title = names.length <= 2 ? names.map(words).join(", ") : commonWord(names) || this.options!.title;
     return { ...axis(`y${k}`, title, unit), side: k === 0 ? 3 : 1, grid: { show: k === 0, stroke: colour("grid"), width: 1 } };
   }
 
@@ -192,6 +194,19 @@ function padded(part: number): uPlot.Range.Function {
   };
 }
 
+// Length of a tick, and room between it and its label (CSS pixels).
+const TICK = 5;
+const GAP = 4;
+
+/** The width of the longest label (CSS pixels). */
+function widest(u: uPlot, labels: string[] | null): number {
+  u.ctx.save();
+  u.ctx.font = `12px ${FONT}`;
+  const width = Math.max(0, ...(labels ?? []).map((label) => u.ctx.measureText(label).width));
+  u.ctx.restore();
+  return Math.ceil(width);
+}
+
 function axis(scale: string, title: string, unit: string): uPlot.Axis {
   const factor = (u: uPlot) => {
     const { min, max } = u.scales[scale]!;
@@ -212,10 +227,10 @@ function axis(scale: string, title: string, unit: string): uPlot.Axis {
     labelFont: `600 12px ${FONT}`,
     labelSize: 18,
     labelGap: 0,
-    size: isX ? 30 : 52,
-    gap: 4,
+    size: isX ? 30 : (u, labels) => Math.max(52, TICK + GAP + widest(u, labels) + 3),
+    gap: GAP,
     space: isX ? 70 : 36,
-    ticks: { stroke: colour("axis"), width: 1, size: 5 },
+    ticks: { stroke: colour("axis"), width: 1, size: TICK },
     grid: { stroke: colour("grid"), width: 1 },
     label,
     values: (u, splits) => {
@@ -242,7 +257,7 @@ function logLabels(u: uPlot, scale: string, splits: (number | null)[], factor: n
 
 const isPowerOfTen = (v: number): boolean => v > 0 && Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9;
 
-/** "energy" for "kinetic energy", "strain energy"; else the first name and dots. */
+/** "energy" for "kinetic energy", "strain energy"; empty where they share no word. */
 function commonWord(names: string[]): string {
   const sets = names.map((name) => words(name).split(" "));
   const shared = sets[0]!.filter((word) => sets.every((set) => set.includes(word)));

@@ -101,8 +101,14 @@ export class Panel {
       height: this.frame.clientHeight,
       inset: insetFor(this.dimension),
       plane: flat ? { x: [x - wide, x + wide], y: [y - half, y + half] } : null,
-      triad: flat ? null : { axes: this.screenAxes(), size: sizeOf(this.bounds) },
+      triad: flat ? null : { axes: this.screenAxes(), size: this.bodySize },
     };
+  }
+
+  /** The undeformed body: a point is the middle of a cube, but the nodes of a mesh lie on its faces. */
+  private get bodySize(): Vector {
+    const { cells, spacing, dimension } = this.view;
+    return sizeOf(this.bounds).map((extent, a) => (cells.length > 0 || a >= dimension ? extent : extent + spacing)) as Vector;
   }
 
   private screenAxes(): [number, number, number][] {

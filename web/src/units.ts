@@ -61,7 +61,8 @@ export function short(value: number, digits = 4): string {
 export function quantity(value: number | null, unit: string, digits = 4): string {
   if (value === null || Number.isNaN(value)) return "–";
   const scale = scaleFor(Math.abs(value), unit);
-  return `${short(value * scale.factor, digits)}${scale.unit ? " " + pretty(scale.unit) : ""}`;
+  const between = scale.unit.startsWith("10") ? "·" : " ";
+  return `${short(value * scale.factor, digits)}${scale.unit ? between + pretty(scale.unit) : ""}`;
 }
 
 /** The shortest digits that name this float32 and no other. */
