@@ -197,11 +197,13 @@ function padded(part: number): uPlot.Range.Function {
 // Length of a tick, and room between it and its label (CSS pixels).
 const TICK = 5;
 const GAP = 4;
+const LABEL_FONT = `12px ${FONT}`;
+const TITLE_FONT = `600 12px ${FONT}`;
 
 /** The width of the longest label (CSS pixels). */
-function widest(u: uPlot, labels: string[] | null): number {
+function widest(u: uPlot, labels: string[] | null, font = LABEL_FONT): number {
   u.ctx.save();
-  u.ctx.font = `12px ${FONT}`;
+  u.ctx.font = font;
   const width = Math.max(0, ...(labels ?? []).map((label) => u.ctx.measureText(label).width));
   u.ctx.restore();
   return Math.ceil(width);
@@ -218,13 +220,14 @@ function axis(scale: string, title: string, unit: string): uPlot.Axis {
   const label = (u: uPlot) => {
     const whole = withUnit(title, factor(u).unit);
     const room = (isX ? u.bbox.width : u.bbox.height) / (window.devicePixelRatio || 1);
-    return whole.length * 7 < room || isX ? whole : withUnit("", factor(u).unit);
+    // It may stand out a little: beside the corners of a plot there is nothing.
+    return isX || widest(u, [whole], TITLE_FONT) < room + 12 ? whole : withUnit("", factor(u).unit);
   };
   return {
     scale,
     stroke: colour("ink"),
-    font: `12px ${FONT}`,
-    labelFont: `600 12px ${FONT}`,
+    font: LABEL_FONT,
+    labelFont: TITLE_FONT,
     labelSize: 18,
     labelGap: 0,
     size: isX ? 30 : (u, labels) => Math.max(52, TICK + GAP + widest(u, labels) + 3),
