@@ -8,6 +8,8 @@ import { colour, FONT, theme } from "./theme";
 import { powerOfTen, pretty, scaleFor, tickLabels, withUnit } from "./units";
 
 export interface ChartOptions {
+  /** Of the y axis, where the names of its lines have no word in common. */
+  title: string;
   xTitle: string;
   xUnit: string;
   logX: boolean;
@@ -123,7 +125,7 @@ export class Chart {
 
   private yAxis(unit: string, k: number): uPlot.Axis {
     const names = [...new Set(this.lines.filter((line) => line.unit === unit).map((line) => line.name))];
-    const title = names.length <= 2 ? names.map(words).join(", ") : commonWord(names);
+    const title = names.length <= 2 ? names.map(words).join(", ") : commonWord(names) || this.options!.title;
     return { ...axis(`y${k}`, title, unit), side: k === 0 ? 3 : 1, grid: { show: k === 0, stroke: colour("grid"), width: 1 } };
   }
 
@@ -192,6 +194,21 @@ function padded(part: number): uPlot.Range.Function {
   };
 }
 
+// Length of a tick, and room between it and its label (CSS pixels).
+const TICK = 5;
+const GAP = 4;
+const LABEL_FONT = `12px ${FONT}`;
+const TITLE_FONT = `600 12px ${FONT}`;
+
+/** The width of the longest label (CSS pixels). */
+function widest(u: uPlot, labels: string[] | null, font = LABEL_FONT): number {
+  u.ctx.save();
+  u.ctx.font = font;
+  const width = Math.max(0, ...(labels ?? []).map((label) => u.ctx.measureText(label).width));
+  u.ctx.restore();
+  return Math.ceil(width);
+}
+
 function axis(scale: string, title: string, unit: string): uPlot.Axis {
   const factor = (u: uPlot) => {
     const { min, max } = u.scales[scale]!;
@@ -203,19 +220,20 @@ function axis(scale: string, title: string, unit: string): uPlot.Axis {
   const label = (u: uPlot) => {
     const whole = withUnit(title, factor(u).unit);
     const room = (isX ? u.bbox.width : u.bbox.height) / (window.devicePixelRatio || 1);
-    return whole.length * 7 < room || isX ? whole : withUnit("", factor(u).unit);
+    // It may stand out a little: beside the corners of a plot there is nothing.
+    return isX || widest(u, [whole], TITLE_FONT) < room + 12 ? whole : withUnit("", factor(u).unit);
   };
   return {
     scale,
     stroke: colour("ink"),
-    font: `12px ${FONT}`,
-    labelFont: `600 12px ${FONT}`,
+    font: LABEL_FONT,
+    labelFont: TITLE_FONT,
     labelSize: 18,
     labelGap: 0,
-    size: isX ? 30 : 52,
-    gap: 4,
+    size: isX ? 30 : (u, labels) => Math.max(52, TICK + GAP + widest(u, labels) + 3),
+    gap: GAP,
     space: isX ? 70 : 36,
-    ticks: { stroke: colour("axis"), width: 1, size: 5 },
+    ticks: { stroke: colour("axis"), width: 1, size: TICK },
     grid: { stroke: colour("grid"), width: 1 },
     label,
     values: (u, splits) => {
@@ -242,7 +260,7 @@ function logLabels(u: uPlot, scale: string, splits: (number | null)[], factor: n
 
 const isPowerOfTen = (v: number): boolean => v > 0 && Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9;
 
-/** "energy" for "kinetic energy", "strain energy"; else the first name and dots. */
+/** "energy" for "kinetic energy", "strain energy"; empty where they share no word. */
 function commonWord(names: string[]): string {
   const sets = names.map((name) => words(name).split(" "));
   const shared = sets[0]!.filter((word) => sets.every((set) => set.includes(word)));

@@ -19,8 +19,8 @@ export class Controls {
   private readonly component = h("select", { "aria-label": "Component" });
   private readonly map = h("select", { "aria-label": "Colour map" });
   private readonly range = h("select", { "aria-label": "Range of the colours" });
-  private readonly low = h("input", { type: "number", step: "any", "aria-label": "Lowest colour" });
-  private readonly high = h("input", { type: "number", step: "any", "aria-label": "Highest colour" });
+  private readonly low = h("input", { type: "number", step: "any", "aria-label": "Lowest colour", class: "wide" });
+  private readonly high = h("input", { type: "number", step: "any", "aria-label": "Highest colour", class: "wide" });
   private readonly rangeUnit = h("span", { class: "quiet" });
   private readonly deformation = h("input", { type: "number", step: "any", min: 0, value: 1, "aria-label": "Scale of the deformation" });
   private readonly deformationSlider = h("input", { type: "range", min: 0, max: 100, step: 1, "aria-label": "Scale of the deformation (slider)" });
@@ -143,7 +143,10 @@ export class Controls {
     this.map.value = settings.map;
     this.range.value = Array.isArray(settings.range) ? "typed" : settings.range;
     const { factor, unit } = this.unitScale;
-    const digits = (v: number) => String(Number((v * factor).toPrecision(4)));
+    const digits = (v: number) => {
+      const text = String(Number((v * factor).toPrecision(4)));
+      return text.length > 9 ? (v * factor).toExponential(3) : text;
+    };
     const typed = Array.isArray(settings.range);
     for (const [input, value] of [[this.low, view.range[0]], [this.high, view.range[1]]] as const) {
       input.value = digits(value);
@@ -170,6 +173,7 @@ export class Controls {
     const { parameter } = this.results[0]!;
     const { values, settings } = this.view;
     if (values.length === 0) return "undeformed";
+    if (this.view.byNumber) return `state ${settings.state + 1} of ${values.length}`;
     return `${parameter.name} ${quantity(this.view.value, parameter.unit)} (${settings.state + 1} of ${values.length})`;
   }
 
@@ -197,7 +201,7 @@ export class Controls {
   }
 
   private async savePicture(): Promise<void> {
-    const name = `${this.results.map((r) => fileName(r.name)).join("-")}-${fileName(this.view.settings.field)}-${short(this.view.value)}.png`;
+    const name = `${this.results.map((r) => fileName(r.name)).join("-")}-${fileName(this.view.settings.field)}-${this.view.byNumber ? "state-" : ""}${short(this.view.value)}.png`;
     download(name, await this.view.picture());
   }
 

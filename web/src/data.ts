@@ -79,9 +79,13 @@ export interface ViewData {
   positions: Packed;
   cells: Cells[];
   fields: Field[];
-  field?: string; // what the program would show first
+  /** The field to show first. */
+  field?: string;
   states: { value: number; values: Packed[] }[];
 }
+
+/** The parameters that the results run over, each once. */
+export const parametersOf = (results: ResultData[]): string[] => [...new Set(results.map((result) => result.parameter.name))];
 
 /** Data that cannot be shown; the message says which, and is meant for the user. */
 export class DataError extends Error {}

@@ -3,7 +3,7 @@
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
 import { Controls } from "./controls";
-import { canUnpack, DataError, readPage, type PageData, type ResultData } from "./data";
+import { canUnpack, DataError, parametersOf, readPage, type PageData, type ResultData } from "./data";
 import { h } from "./dom";
 import type { Component } from "./fields";
 import { helpDialog } from "./help";
@@ -90,6 +90,9 @@ function remarks(results: ResultData[]): HTMLElement[] {
   ]);
 }
 
+/** "a, b and c"; `before` stands before each but the first. */
+const listed = (names: string[], before: string): string => names.map((name, n) => (n === 0 ? name : before + name)).join(", ").replace(/, (?=[^,]*$)/, " and ");
+
 /** More pictures side by side are too small, and browsers limit the number of drawings by WebGL in a page. */
 const MOST_PANELS = 6;
 
@@ -99,7 +102,7 @@ async function openView(data: PageData, place: HTMLElement): Promise<{ view: Vie
   const drawn = all.slice(0, MOST_PANELS);
   if (drawn.length < all.length) place.append(message(`The first ${MOST_PANELS} of ${all.length} results are drawn; plots and tables have all of them.`, "note"));
   if (drawn.length === 0) {
-    place.append(message("This result has no field files: there is nothing to draw.", "note"));
+    place.append(message(`${data.results.length > 1 ? "These results have" : "This result has"} no field files: there is nothing to draw.`, "note"));
     return null;
   }
   if (!hasWebGL2()) {
@@ -107,6 +110,8 @@ async function openView(data: PageData, place: HTMLElement): Promise<{ view: Vie
     return null;
   }
   if (!canUnpack()) return null;
+  const parameters = parametersOf(drawn);
+  if (parameters.length > 1) place.append(message(`Results over ${listed(parameters, "over ")}: the slider goes by state number.`, "note"));
   const view = new View(drawn, data.colour_maps);
   const controls = new Controls(view, drawn, data.colour_maps);
   place.append(view.element, controls.element);

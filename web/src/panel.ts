@@ -101,13 +101,14 @@ export class Panel {
       height: this.frame.clientHeight,
       inset: insetFor(this.dimension),
       plane: flat ? { x: [x - wide, x + wide], y: [y - half, y + half] } : null,
-      triad: flat ? null : { axes: this.screenAxes(), size: this.bodySize() },
+      triad: flat ? null : { axes: this.screenAxes(), size: this.bodySize },
     };
   }
 
-  /** The bounds are those of the points' centres: the outermost cells reach half a spacing further. */
-  private bodySize(): Vector {
-    return sizeOf(this.bounds).map((length) => length + this.view.spacing) as Vector;
+  /** The undeformed body: a point is the middle of a cube, but the nodes of a mesh lie on its faces. */
+  private get bodySize(): Vector {
+    const { cells, spacing, dimension } = this.view;
+    return sizeOf(this.bounds).map((extent, a) => (cells.length > 0 || a >= dimension ? extent : extent + spacing)) as Vector;
   }
 
   private screenAxes(): [number, number, number][] {

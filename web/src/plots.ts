@@ -31,14 +31,12 @@ export class Plots {
           await readHistory(history).then((columns) => tables.push({ result, history, columns }), failed);
       if (tables.length > 0) this.add(name, tables);
     }
-    if (this.cards.length === 0) this.element.append(h("p", { class: "quiet" }, "This result has no histories."));
+    if (this.cards.length === 0) this.element.append(h("p", { class: "quiet" }, results.length > 1 ? "These results have no histories." : "This result has no histories."));
   }
 
   private add(name: string, tables: Table[]): void {
     const columns = allColumns(tables);
-    // A model without an energy balance has a column of it that is empty.
-    const filled = (c: number) => tables.some(({ history, columns: values }) => values[history.columns.findIndex((column) => column.name === columns[c]!.name)]?.some(Number.isFinite));
-    for (const { title, chosen, files } of plotsOf(name, columns).filter((plan) => plan.chosen.some(filled))) {
+    for (const { title, chosen, files } of plotsOf(name, columns, (c) => hasNumber(tables, columns[c]!.name))) {
       const card = new PlotCard(title, tables, columns, chosen, files, this.shown);
       this.cards.push(card);
       this.element.append(card.element);
@@ -62,6 +60,10 @@ function allColumns(tables: Table[]): Column[] {
   return [...columns.values()];
 }
 
+/** Whether there is anything to plot of a column. */
+const hasNumber = (tables: Table[], name: string): boolean =>
+  tables.some(({ history, columns }) => columns[history.columns.findIndex((column) => column.name === name)]?.some(Number.isFinite));
+
 interface PlotPlan {
   title: string;
   chosen: number[]; // indices of columns
@@ -69,14 +71,14 @@ interface PlotPlan {
 }
 
 /** What is plotted of a history at first. Energies and the error of their balance differ by powers of ten. */
-function plotsOf(name: string, columns: Column[]): PlotPlan[] {
-  const rest = columns.map((_, c) => c).slice(1);
+function plotsOf(name: string, columns: Column[], filled: (column: number) => boolean): PlotPlan[] {
+  const rest = columns.map((_, c) => c).slice(1).filter(filled);
   if (rest.length === 0) return []; // A case without probes has nothing but the parameter.
   if (name === "energy") {
     const error = rest.filter((c) => /balance|error/.test(columns[c]!.name));
     const energies = rest.filter((c) => !error.includes(c));
-    const plans = [{ title: "Energy", chosen: energies, files: true }];
-    return error.length > 0 ? [...plans, { title: "Energy balance", chosen: error, files: false }] : plans;
+    const plans = [{ title: "Energy", chosen: energies }, { title: "Energy balance", chosen: error }];
+    return plans.filter(({ chosen }) => chosen.length > 0).map((plan, n) => ({ ...plan, files: n === 0 }));
   }
   const { unit } = columns[rest[0]!]!;
   const chosen = rest.filter((c) => columns[c]!.unit === unit).slice(0, FIRST_LINES);
@@ -87,6 +89,7 @@ function plotsOf(name: string, columns: Column[]): PlotPlan[] {
 class PlotCard {
   readonly chart = new Chart();
   readonly element: HTMLElement;
+  private readonly note = h("p", { class: "plot-note", hidden: true });
   private x = 0;
 
   constructor(
@@ -98,14 +101,17 @@ class PlotCard {
     private readonly shown: Shown,
   ) {
     const head = h("header", {}, h("h3", {}, title), this.xChoice(), this.yChoice(), files ? this.fileButtons() : null);
-    this.element = h("article", { class: "plot", "aria-label": `Plot: ${title}` }, head, this.chart.element, this.chart.legend);
+    this.element = h("article", { class: "plot", "aria-label": `Plot: ${title}` }, head, this.chart.element, this.chart.legend, this.note);
   }
 
   draw(): void {
     const lines: Line[] = this.tables.flatMap((table) => this.linesOf(table));
     const { name, unit } = this.columns[this.x]!;
     const { log_x: logX = false, log_y: logY = false } = this.tables[0]!.history;
-    this.chart.show(lines, { xTitle: words(name), xUnit: unit, logX, logY, marks: () => this.marks() });
+    const without = this.tables.filter((table) => !this.valuesIn(table, this.x));
+    this.note.textContent = `Not over ${words(name)}, so left out: ${without.map(({ result }) => `${result.label} (over ${words(result.parameter.name)})`).join(", ")}.`;
+    this.note.hidden = without.length === 0;
+    this.chart.show(lines, { title: words(this.tables[0]!.history.name), xTitle: words(name), xUnit: unit, logX, logY, marks: () => this.marks() });
   }
 
   private linesOf(table: Table): Line[] {
@@ -126,7 +132,7 @@ class PlotCard {
   private marks(): number[] {
     return this.tables.map((table) => {
       const value = this.shown(table.result.name);
-      if (this.x === 0) return value;
+      if (this.x === 0 && this.valuesIn(table, 0) === table.columns[0]) return value;
       const parameter = table.columns[0]!;
       let best = 0;
       parameter.forEach((p, row) => {

@@ -1,5 +1,6 @@
 // One result drawn by vtk.js: a body of points and cells whose coordinates and colours change in place.
 
+import { pixelsPerMetre } from "./camera";
 import type { Cells } from "./data";
 import { Dots, spread } from "./dots";
 import { findNeighbours, isCovered, stretchedRadii, type Neighbours } from "./neighbours";
@@ -18,6 +19,8 @@ export type Rgb = [number, number, number];
 // Radius (in spacings) of discs and spheres: they reach the middle of the square between four points of a lattice, so
 // that a sheet, or the surface of a solid, has no gaps.
 const RADIUS = 0.72;
+// Of discs that lie in a line (CSS pixels).
+const LEAST_RADIUS = 4;
 // Where a full picture takes longer than this (ms), moving pictures show fewer and larger points.
 const SLOW = 120;
 const COARSE_POINTS = 20000;
@@ -37,6 +40,7 @@ export class Scene {
   private readonly colours;
   private readonly mesh = vtkPolyData.newInstance();
   private readonly bare: Uint8Array;
+  private readonly isLine: boolean;
   private readonly ghost: vtkActor;
   private readonly neighbours: Neighbours;
   private readonly dots: Dots;
@@ -45,6 +49,8 @@ export class Scene {
   private stretchLimit = 1;
   private hidden = false;
   private slow = false;
+  private height = 1; // of the picture, CSS pixels
+  private grown = 1;
 
   constructor(
     readonly body: Body,
@@ -56,6 +62,7 @@ export class Scene {
     this.radii = new Float32Array(count);
     this.shown = new Uint8Array(count).fill(1);
     this.bare = bareMask(body);
+    this.isLine = isLine(body);
     this.neighbours = findNeighbours(body.positions, 1.3 * body.spacing);
     this.points.setData(this.deformed, 3);
     this.colours = vtkDataArray.newInstance({ name: "colour", numberOfComponents: 4, values: this.rgba });
@@ -141,7 +148,7 @@ export class Scene {
   /** Takes over places, colours, and what is `shown`. */
   update(): void {
     this.drawn = this.pointsToDraw();
-    this.dots.fill(this, this.drawn);
+    this.dots.fill(this, this.drawn, this.grown);
     if (this.body.cells.length > 0 && (this.hidden || this.shown.includes(0))) this.updateCells();
     this.colours.modified();
     this.points.modified();
@@ -170,6 +177,7 @@ export class Scene {
    * Without a graphics card 300 000 points take a second, and nobody can move a body at that rate.
    */
   render(moving = false): boolean {
+    this.growLine();
     const many = this.drawn.length > 2 * COARSE_POINTS;
     const coarse = moving && this.slow && many;
     if (coarse) {
@@ -188,6 +196,15 @@ export class Scene {
     return coarse;
   }
 
+  /** A bar of points in a row would be a hairline: its discs have a least size on the screen. */
+  private growLine(): void {
+    if (!this.isLine) return;
+    const grown = Math.max(1, LEAST_RADIUS / (RADIUS * this.body.spacing * pixelsPerMetre(this, this.height)));
+    if (Math.abs(grown - this.grown) < 0.01 * grown) return;
+    this.grown = grown;
+    this.dots.fill(this, this.drawn, grown);
+  }
+
   /** Drawing goes on after the call that asked for it; reading a pixel waits for its end. */
   private waitForPicture(): void {
     const gl = this.canvas.getContext("webgl2");
@@ -196,6 +213,7 @@ export class Scene {
 
   /** Fits the drawing to its container; the ratio of device to CSS pixels may have changed, too. */
   resize(width: number, height: number): void {
+    this.height = height;
     const ratio = window.devicePixelRatio || 1;
     this.glWindow.setSize(Math.max(1, Math.floor(width * ratio)), Math.max(1, Math.floor(height * ratio)));
   }
@@ -203,6 +221,12 @@ export class Scene {
   get canvas(): HTMLCanvasElement {
     return this.glWindow.getCanvas()!;
   }
+}
+
+/** Whether all points of a plane body have the same y, or the same x. */
+function isLine({ dimension, positions }: Body): boolean {
+  const same = (axis: number) => positions.every((x, i) => i % 3 !== axis || x === positions[axis]);
+  return dimension === 2 && (same(1) || same(0));
 }
 
 /** 1 for each point that no cell uses: those are drawn as discs or spheres. */

@@ -20,12 +20,17 @@ const allNames = (lists: string[][]): string[] => [...new Set(lists.flat())];
 /** A column for each result; over a single one there is no need to say whose it is. */
 const resultColumns = (results: ResultData[], single: string): string[] => (results.length > 1 ? results.map((r) => r.label) : [single]);
 
+function whyNoMetrics(results: ResultData[]): string {
+  const stuck = results.filter((r) => r.status !== "finished" && r.histories.every((history) => history.rows === 0)).length;
+  const several = results.length > 1;
+  if (stuck === results.length) return several ? "The runs reached no state." : "The run reached no state.";
+  if (stuck > 0) return "There are no metrics: runs reached no state, or their cases have no probes.";
+  return several ? "These results have no metrics: their cases have no probes." : "This result has no metrics: its case has no probes.";
+}
+
 export function metricsTable(results: ResultData[]): HTMLElement {
   const names = allNames(results.map((r) => r.metrics.map((m) => m.name)));
-  if (names.length === 0) {
-    const reached = results.some((r) => r.histories.some((history) => history.rows > 0));
-    return h("p", { class: "quiet" }, reached ? "There are no metrics: no probe was asked for." : "There are no metrics: no state was reached.");
-  }
+  if (names.length === 0) return h("p", { class: "quiet" }, whyNoMetrics(results));
   const rows = names.map((name): Cell[] => [
     { text: words(name) },
     ...results.map(({ metrics }): Cell => {

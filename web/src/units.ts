@@ -61,8 +61,8 @@ export function short(value: number, digits = 4): string {
 export function quantity(value: number | null, unit: string, digits = 4): string {
   if (value === null || Number.isNaN(value)) return "–";
   const scale = scaleFor(Math.abs(value), unit);
-  const gap = scale.unit.startsWith("10") ? "·" : " ";
-  return `${short(value * scale.factor, digits)}${scale.unit ? gap + pretty(scale.unit) : ""}`;
+  const between = scale.unit.startsWith("10") ? "·" : " ";
+  return `${short(value * scale.factor, digits)}${scale.unit ? between + pretty(scale.unit) : ""}`;
 }
 
 /** The shortest digits that name this float32 and no other. */

@@ -2,7 +2,7 @@
 
 import { fittingPose, listen, pan, poseOf, setPose, turn, zoom, type Box } from "./camera";
 import { colourTable, paint } from "./colours";
-import type { ColourMap, Field, ResultData } from "./data";
+import { parametersOf, type ColourMap, type Field, type ResultData, type ViewData } from "./data";
 import { drawBar, type Bar } from "./decor";
 import { h } from "./dom";
 import { EMPTY_RANGE, fieldIndex, fieldTitle, joined, nearestState, rangeOf, scalars, type Component, type Range } from "./fields";
@@ -40,7 +40,9 @@ export class View {
   private readonly grid = h("div", { class: "grid" });
   private readonly barCanvas = h("canvas", { class: "bar", role: "img" });
   readonly dimension: 2 | 3;
-  /** Values of the parameter at which there is a state, of any result. */
+  /** Results over different parameters have no value in common: their states go by number. */
+  readonly byNumber: boolean;
+  /** Values of the parameter at which there is a state, of any result; by number: 1, 2, ... */
   readonly values: number[];
   /** All fields of all results, each once. */
   readonly fields: Field[];
@@ -63,7 +65,10 @@ export class View {
   ) {
     const views = results.map((result) => result.view!);
     this.dimension = views.some((v) => v.dimension === 3) ? 3 : 2;
-    this.values = [...new Set(views.flatMap((v) => v.states.map((s) => s.value)))].sort((a, b) => a - b);
+    this.byNumber = parametersOf(results).length > 1;
+    this.values = this.byNumber
+      ? Array.from({ length: Math.max(...views.map((v) => v.states.length)) }, (_, n) => n + 1)
+      : [...new Set(views.flatMap((v) => v.states.map((s) => s.value)))].sort((a, b) => a - b);
     const names = new Set<string>();
     this.fields = views.flatMap((v) => v.fields).filter((f) => !names.has(f.name) && names.add(f.name));
     this.settings = {
@@ -115,15 +120,14 @@ export class View {
 
   // --- what is shown -------------------------------------------------------------------------------------------
 
-  /** The field that says most at first sight: the program's choice, else damage if there is any, else energy. */
+  /** The field that the program chose, or the one that says most at first sight: damage if there is any, else energy. */
   private async chooseField(): Promise<void> {
     const has = (name: string) => this.fields.some((f) => f.name === name);
     let name = this.fields[0]?.name ?? "";
     if (has("strain_energy_density")) name = "strain_energy_density";
-    if (has("damage") && (await this.rangeAtLast("damage"))[1] > 0) name = "damage";
-    const told = this.panels.map(({ view }) => view.field);
-    const choice = told.includes("damage") ? "damage" : told[0];
-    if (choice !== undefined && has(choice)) name = choice;
+    const chosen = this.results.map(({ view }) => view!.field).find((field) => field !== undefined && has(field));
+    if (chosen !== undefined) name = chosen;
+    else if (has("damage") && (await this.rangeAtLast("damage"))[1] > 0) name = "damage";
     this.settings.field = name;
     this.settings.component = this.field?.components === 1 ? 0 : "magnitude";
   }
@@ -143,7 +147,7 @@ export class View {
   get map(): ColourMap {
     return this.maps.find((m) => m.name === this.settings.map) ?? this.maps[0]!;
   }
-  /** The value of the parameter that is shown. */
+  /** The value of the parameter that is shown, or the number of the state. */
   get value(): number {
     return this.values[this.settings.state] ?? NaN;
   }
@@ -187,8 +191,14 @@ export class View {
     this.panels.forEach((panel, n) => this.fill(panel, shown[n]!, settings, table));
   }
 
+  /** The state of a result that belongs to the place `index` of the slider. */
+  private stateOf(view: ViewData, index: number): number {
+    if (!this.byNumber) return nearestState(view, this.values[index]!);
+    return Math.round((index / Math.max(1, this.values.length - 1)) * (view.states.length - 1));
+  }
+
   private async shownBy({ view, store }: Panel, settings: Settings): Promise<Shown> {
-    const state = view.states.length > 0 ? nearestState(view, this.values[settings.state]!) : -1;
+    const state = view.states.length > 0 ? this.stateOf(view, settings.state) : -1;
     const get = async (name: string) => {
       const f = fieldIndex(view, name);
       return f >= 0 && state >= 0 ? store.get(state, f) : null;

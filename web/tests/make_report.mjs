@@ -105,6 +105,22 @@ export const MEMBRANE = {
   force: (stretch) => 18166 * (stretch - stretch ** -5),
 };
 
+/** A bar: points in a row, in a page of two dimensions. */
+export function bar(n = 200) {
+  const h = 1 / n;
+  return result({
+    name: "bar",
+    title: "A bar",
+    parameter: { name: "time", unit: "s" },
+    states: [0, 1e-4],
+    points: range(n, (i) => [(i + 0.5) * h, 0, 0]),
+    dimension: 2,
+    spacing: h,
+    fields: [{ name: "displacement", unit: "m", components: 3, of: ([x], t) => [10 * t * x, 0, 0] }],
+    histories: [],
+  });
+}
+
 export function membrane(name = "equibiaxial-hole", factor = 1, n = 50) {
   const m = MEMBRANE;
   const rows = range(41, (i) => 1 + 0.05 * i);

@@ -77,6 +77,13 @@ describe("tables and texts", () => {
     assert.equal(rows.filter((row) => row[6] === "✗ missed").length, 1);
   });
 
+  test("small values of units without prefixes have a dot before the power", async () => {
+    const result = { ...fracture("small", { view: null }), metrics: [{ name: "mass", value: 5e-6, unit: "kg" }] };
+    const { page, context } = await open(browser, write("small", fill(pageOf(result))));
+    assert.match(await page.locator("#numbers").innerText(), /5·10⁻⁶ kg/);
+    await context.close();
+  });
+
   test("texts of the data never become elements", async () => {
     assert.match(await page.locator("#case pre").first().textContent(), /<script>alert\(1\)<\/script> & co\./);
     assert.equal(await page.locator("#case pre script, #numbers b").count(), 0);
@@ -243,6 +250,22 @@ describe("what is missing or damaged is said", () => {
     assert.equal(await page.locator("#numbers table").count(), 2);
     assert.deepEqual(complaints, []);
     await context.close();
+  });
+
+  test("why there are no metrics", async () => {
+    const stuck = (name) => ({ ...fracture(name, { status: "failed", view: null }), metrics: [], histories: [] });
+    const bare = (name) => ({ ...fracture(name, { status: "finished", view: null }), metrics: [] });
+    const cases = [
+      [[stuck("a")], /The run reached no state\./],
+      [[stuck("a"), stuck("b")], /The runs reached no state\./],
+      [[bare("a")], /This result has no metrics: its case has no probes\./],
+      [[bare("a"), bare("b")], /These results have no metrics: their cases have no probes\./],
+    ];
+    for (const [results, expected] of cases) {
+      const { text, context } = await openText(write(`metrics-${++files}`, fill(pageOf(...results))));
+      assert.match(text, expected);
+      await context.close();
+    }
   });
 
   test("a run that failed, and one that was thinned", async () => {

@@ -5,7 +5,8 @@ import { readFileSync } from "node:fs";
 import { after, before, describe, test } from "node:test";
 import { launch, open } from "./browser.mjs";
 import { colours, decode, difference } from "./png.mjs";
-import { dataOf, madeFile, reportFile, unpack } from "./reports.mjs";
+import { fill, fracture, membrane, pack, page as pageOf } from "./make_report.mjs";
+import { dataOf, madeFile, reportFile, unpack, write } from "./reports.mjs";
 
 let browser;
 before(async () => (browser = await launch()));
@@ -134,20 +135,69 @@ for (const name of ["membrane", "fracture"]) {
   });
 }
 
-test("axes have prefixes that make numbers legible, and powers of ten on log axes", async () => {
-  // Labels are written on canvases, so what is written there is recorded.
-  const { page, context, complaints } = await open(browser, madeFile("block"), {
-    before: () => {
-      const fillText = CanvasRenderingContext2D.prototype.fillText;
-      window.written = [];
-      CanvasRenderingContext2D.prototype.fillText = function (text, ...rest) {
-        window.written.push(text);
-        return fillText.call(this, text, ...rest);
-      };
-    },
-  });
+/** Labels are written on canvases, so what is written there is recorded. */
+function record() {
+  const fillText = CanvasRenderingContext2D.prototype.fillText;
+  window.written = [];
+  CanvasRenderingContext2D.prototype.fillText = function (text, ...rest) {
+    window.written.push(text);
+    return fillText.call(this, text, ...rest);
+  };
+}
+
+/** Gives columns of a history other values; `of` (row) by name. */
+function overwrite(history, of) {
+  const { rows } = history;
+  const values = unpack(history.values);
+  history.columns.forEach(({ name }, c) => of[name] && values.set(Array.from({ length: rows }, (_, row) => of[name](row)), c * rows));
+  history.values = pack("float64", values);
+}
+
+test("axes of columns without a common word have the title of the history, and room for long labels", async () => {
+  const result = membrane();
+  overwrite(result.histories[1], { balance_error: (row) => -0.0011 + 2.75e-5 * row });
+  const { page, context } = await open(browser, write("energy-axes", fill(pageOf(result))), { before: record, viewport: { width: 1280, height: 1300 } });
   const written = await page.evaluate(() => window.written);
-  for (const text of ["force [kN]", "time [ms]", "40", "stress amplitude [GPa]", "cycles", "10⁶", "x", "undeformed: 230 × 110 × 70 mm"]) assert.ok(written.includes(text), text);
+  assert.ok(written.includes("energy [kJ]"), `${written}`);
+  assert.ok(written.includes("−0.0010"), `${written}`);
+  const room = await plot(page, 2).locator(".uplot").evaluate((u) => {
+    const ctx = document.createElement("canvas").getContext("2d");
+    ctx.font = `12px ${getComputedStyle(u).fontFamily}`;
+    return { left: u.querySelector(".u-over").offsetLeft, label: ctx.measureText("−0.0010").width };
+  });
+  assert.ok(room.left >= 18 + 9 + room.label, JSON.stringify(room)); // title, tick and gap, label
+  await context.close();
+});
+
+test("columns without any number get no plot", async () => {
+  const result = membrane();
+  overwrite(result.histories[1], { balance_error: () => NaN });
+  const { page, context, complaints } = await open(browser, write("no-balance", fill(pageOf(result))));
+  assert.deepEqual((await page.evaluate(() => window.riven.plots())).map((p) => p.title), ["History", "Energy"]);
+  assert.deepEqual(complaints, []);
+  await context.close();
+});
+
+test("results over different parameters share states by number, and plots name what they leave out", async () => {
+  const { page, context, complaints } = await open(browser, write("mixed", fill(pageOf(membrane("sheet"), fracture("plate")))));
+  const text = await page.locator("#view").innerText();
+  assert.match(text, /Results over stretch and over time: the slider goes by state number\./);
+  assert.match(await page.locator(".state").innerText(), /^state 7 of 7$/);
+  const notes = () => page.locator(".panel-note").allTextContents();
+  assert.match((await notes()).join(), /^stretch 3 \(state 5 of 5\).*time 48 µs \(state 7 of 7\)/);
+  await page.evaluate(() => window.riven.setState(3));
+  assert.match((await notes()).join(), /^stretch 2 \(state 3 of 5\).*time 24 µs \(state 4 of 7\)/);
+  assert.match(await plot(page, 0).innerText(), /Not over stretch, so left out: plate \(over time\)\./);
+  await plot(page, 0).locator("select").selectOption({ label: "time" });
+  assert.match(await plot(page, 0).innerText(), /Not over time, so left out: sheet \(over stretch\)\./);
+  assert.deepEqual(complaints, []);
+  await context.close();
+});
+
+test("axes have prefixes that make numbers legible, and powers of ten on log axes", async () => {
+  const { page, context, complaints } = await open(browser, madeFile("block"), { before: record });
+  const written = await page.evaluate(() => window.written);
+  for (const text of ["force [kN]", "time [ms]", "40", "stress amplitude [GPa]", "cycles", "10⁶", "x", "undeformed: 240 × 120 × 80 mm"]) assert.ok(written.includes(text), text);
   assert.deepEqual(complaints, []);
   await context.close();
 });

@@ -4,9 +4,9 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, before, describe, test } from "node:test";
 import { launch, open } from "./browser.mjs";
-import { FRACTURE, MEMBRANE } from "./make_report.mjs";
+import { bar, fill, FRACTURE, fracture, MEMBRANE, pack, page as pageOf } from "./make_report.mjs";
 import { colours, decode, difference, near } from "./png.mjs";
-import { colourOf, dataOf, fieldAt, madeFile, magnitudes, reportFile, unpack } from "./reports.mjs";
+import { colourOf, dataOf, fieldAt, madeFile, magnitudes, reportFile, unpack, write } from "./reports.mjs";
 
 let browser;
 before(async () => (browser = await launch()));
@@ -352,6 +352,47 @@ describe("solids and meshes", () => {
     // 25 x 25 nodes: without interpolation there were at most 625 colours.
     assert.ok(colours(await shot(page), box).size > 1000);
     assert.deepEqual(complaints, []);
+    await context.close();
+  });
+});
+
+describe("what is shown first", () => {
+  const shown = async (result) => {
+    const { page, context, complaints } = await open(browser, write(`first-${result.name}`, fill(pageOf(result))));
+    assert.deepEqual(complaints, []);
+    return { page, context };
+  };
+
+  test("the field that the program chose, where there is such a field", async () => {
+    for (const [field, expected] of [["strain_energy_density", "strain_energy_density"], ["temperature", "damage"]]) {
+      const result = fracture(`chosen-${field}`);
+      result.view.field = field;
+      const { page, context } = await shown(result);
+      assert.equal((await state(page)).field, expected);
+      await context.close();
+    }
+  });
+
+  test("the whole range in its boxes", async () => {
+    const result = fracture("range");
+    const d = result.view.fields.findIndex((f) => f.name === "damage");
+    for (const { values } of result.view.states) values[d] = pack("float32", unpack(values[d]).map((v) => 0.005603 * v - 0.001234));
+    const { page, context } = await shown(result);
+    await page.evaluate(() => window.riven.setField("damage"));
+    for (const label of ["Lowest colour", "Highest colour"]) {
+      const [room, wide, value] = await page.getByLabel(label).evaluate((input) => [input.clientWidth, input.scrollWidth, input.value]);
+      assert.ok(value.length > 6 && wide <= room, `${label}: ${value} is ${wide} wide in ${room}`);
+    }
+    await context.close();
+  });
+
+  test("a bar is more than a hairline", async () => {
+    const { page, context } = await shown(bar());
+    const [place] = await places(page, [100]);
+    const picture = await shot(page);
+    const ground = picture.at(place.x, place.y - 30);
+    const rows = Array.from({ length: 41 }, (_, n) => n - 20).filter((y) => !near(picture.at(place.x, place.y + y), ground, 20));
+    assert.ok(rows.length >= 6, `${rows.length} px`);
     await context.close();
   });
 });
