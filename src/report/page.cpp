@@ -203,17 +203,6 @@ void add_views(Json& page, std::vector<ReportItem>& items, double room) {
     });
 }
 
-/// A page has one slider and one abscissa.
-void tell_parameters(std::vector<ReportItem>& items) {
-  const Parameter first = items.front().result.parameter();
-  for (ReportItem& item : items)
-    if (item.result.parameter() != first)
-      item.notes.push_back(
-          fmt::format("This result goes by {}, the first one by {}: the slider runs through the values "
-                      "of both, and plots over {} leave it out.",
-                      name(item.result.parameter()), name(first), name(first)));
-}
-
 Json page_json(std::vector<ReportItem>& items, double largest) {
   constexpr double kHistoryPart = 0.2;                        // of the page, for all histories
   constexpr double kBytesOfNumber = sizeof(double) * 4 / 3.;  // at most
@@ -228,7 +217,6 @@ Json page_json(std::vector<ReportItem>& items, double largest) {
   const std::vector<std::string> names = unique_names(items);
   for (std::size_t n = 0; n < items.size(); ++n)
     page["results"].push_back(result_json(items[n], names[n], most));
-  tell_parameters(items);
   const double rest =
       static_cast<double>(json_text(page).size()) + kNotes * static_cast<double>(items.size());
   add_views(page, items, largest - rest);
