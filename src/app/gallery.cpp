@@ -56,29 +56,6 @@ th:last-child, td:last-child { text-align: left; }
                .scroll { overflow: visible; } }
 )";
 
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
-}
-
 /// A path in an address.
 std::string address(const fs::path& path) {
   std::string text;

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "output/atomic_file.hpp"
 #include "output/vtk_array.hpp"
 
@@ -23,36 +24,16 @@ constexpr const char* kUnitKey = "UNITS_LABEL";
 // Points or cells: far more than fits a machine; products do not overflow.
 constexpr std::size_t kMost = std::size_t{1} << 40;
 
-std::string escape(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
-
 template <typename T>
 void write_array(std::ostream& out, const char* type, const std::string& name, int components,
                  std::span<const T> values, const std::string& unit = {}) {
   out << fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">\n",
-                     type, escape(name), components)
+                     type, escaped(name), components)
       << encode_vtk_array(std::as_bytes(values)) << "\n";
   // How VTK keeps the unit of an array. VTK's reader takes for values what comes first.
   if (!unit.empty())
     out << fmt::format("<InformationKey name=\"{}\" location=\"vtkDataArray\">{}</InformationKey>\n",
-                       kUnitKey, escape(unit));
+                       kUnitKey, escaped(unit));
   out << "</DataArray>\n";
 }
 
