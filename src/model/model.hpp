@@ -27,6 +27,15 @@ struct ModelField {
   std::string unit;
 };
 
+/// Symmetric dense blocks whose sum is a tangent stiffness: block b couples the state's entries
+/// dofs[begin[b]] to dofs[begin[b + 1] - 1], n of them, by n x n numbers (N/m) that follow those of block b -
+/// 1 in `values`.
+struct TangentBlocks {
+  std::vector<std::size_t> begin{0};
+  std::vector<std::size_t> dofs;
+  std::vector<double> values;
+};
+
 /// Body and materials. A state is one vector of displacements u (m); its layout belongs to the model. Solvers
 /// ask for forces and know no more than this interface.
 class Model {
@@ -60,6 +69,14 @@ class Model {
 
   /// Upper bound of the sum of |tangent stiffness| over a row (N/m), for stable steps and fictitious masses.
   virtual void stiffness_bound(std::span<const double> u, std::span<double> bound) = 0;
+
+  /// Number of blocks that the tangent stiffness d(-force)/du is made of, usually one per point; 0: the model
+  /// has none. Only of models that are `conservative()`.
+  [[nodiscard]] virtual std::size_t tangent_blocks() const { return 0; }
+  /// Appends blocks [first, last) in the state u, which must be that of the last force evaluation. Threads
+  /// call it at once, each with blocks and an output of its own.
+  virtual void tangent(std::span<const double> /*u*/, std::size_t /*first*/, std::size_t /*last*/,
+                       TangentBlocks& /*to*/) const {}
 
   /// Distance of neighbouring points (m): displacements far below it mean nothing.
   [[nodiscard]] virtual double spacing() const = 0;

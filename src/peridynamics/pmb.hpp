@@ -4,12 +4,11 @@
 #include <limits>
 
 #include "base/snapshot.hpp"
+#include "material/plane.hpp"
 #include "peridynamics/pmb_kernels.hpp"
 #include "peridynamics/point_model.hpp"
 
 namespace riven {
-
-enum class Plane { stress, strain };
 
 struct PmbSettings {
   double youngs_modulus = 0;                                          // Pa

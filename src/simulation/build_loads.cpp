@@ -1,0 +1,203 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "load/mirror.hpp"
+#include "simulation/build_parts.hpp"
+
+namespace riven {
+
+namespace {
+
+constexpr std::size_t kFaces = 6;
+
+LoadFunction make_function(const Expression& expression, Parameter parameter) {
+  if (parameter == Parameter::time)
+    return [expression](const Point& x, double t) { return expression(Variables{.position = x, .t = t}); };
+  return [expression](const Point& x, double stretch) {
+    return expression(Variables{.position = x, .stretch = stretch});
+  };
+}
+
+/// Turns loads into constraints on the state of the model.
+class LoadBuilder {
+ public:
+  LoadBuilder(Simulation& simulation, const PointModel& model)
+      : simulation_(simulation), model_(model), body_(model.body()), loaded_(model.dofs(), false) {}
+
+  void build() {
+    for (const LoadInput& load : simulation_.input.loads)
+      for (const Named& on : load.on) {
+        if (const auto face = Simulation::face(on.text)) {
+          displace_face(load, *face, on);
+        } else {
+          displace_set(load, on);
+        }
+      }
+    for (std::size_t face = 0; face < kFaces; ++face) check_face(face);
+    add_mirror_constraints(body_, faces_, model_.conservative(), *simulation_.constraints);
+    hold_fixed_inclusions();
+  }
+
+ private:
+  void displace_face(const LoadInput& load, std::size_t face, const Named& on) {
+    if (!faces_[face]) faces_[face] = FaceLoad{.displacement = {}, .load = face};
+    face_at_[face] = on.at;
+    for (std::size_t axis = 0; axis < load.displacement.size(); ++axis) {
+      const auto& value = load.displacement[axis].value;
+      if (!value) continue;
+      auto& given = faces_[face]->displacement[axis];
+      if (given)
+        throw InputError(
+            on.at, fmt::format("load: the edge \"{}\" is displaced twice along {}", on.text, "xyz"[axis]));
+      given = make_function(*value, simulation_.parameter);
+    }
+  }
+
+  /// Mirror layers hold the normal component; a tangential one alone would hold the edge's normal strain at
+  /// zero.
+  void check_face(std::size_t face) const {
+    if (!faces_[face]) return;
+    const bool holds = std::any_of(body_.ghosts.begin(), body_.ghosts.end(),
+                                   [&](const GhostPoint& ghost) { return ghost.faces.test(face); });
+    if (!holds)
+      throw InputError(
+          face_at_[face],
+          fmt::format("load: no point of the body lies within a horizon of the edge \"{}\" at {} = {:g} m; "
+                      "the load would move nothing",
+                      kFaceNames[face], "xyz"[face / 2], body_.faces[face]));
+    if (!faces_[face] || faces_[face]->displacement[face / 2]) return;
+    throw InputError(
+        face_at_[face],
+        fmt::format("load: the edge \"{}\" is displaced along itself only; expected its normal component too "
+                    "(entry {} of displacement), or a set of points instead of the edge",
+                    kFaceNames[face], face / 2 + 1));
+  }
+
+  void displace_set(const LoadInput& load, const Named& on) {
+    const PointSet& set = simulation_.set(on.text);
+    for (std::size_t axis = 0; axis < load.displacement.size(); ++axis) {
+      const auto& value = load.displacement[axis].value;
+      if (!value) continue;
+      const LoadFunction function = make_function(*value, simulation_.parameter);
+      for (const std::size_t point : set.points) {
+        const std::size_t dof = simulation_.entry(axis, point);
+        if (loaded_[dof])
+          throw InputError(
+              on.at, fmt::format("load: points of \"{}\" are displaced twice; expected sets without common "
+                                 "points, or other components free",
+                                 on.text));
+        loaded_[dof] = true;
+        simulation_.constraints->add(
+            {.slave = dof,
+             .terms = {{function, body_.position(body_.points[point]), static_cast<int>(axis), 1, kFaces}}});
+      }
+    }
+  }
+
+  void hold_fixed_inclusions() {
+    for (std::size_t n = 0; n < simulation_.input.inclusions.size(); ++n) {
+      if (simulation_.input.inclusions[n].motion != "fixed") continue;
+      for (std::size_t d = 0; d < 3; ++d) {
+        Constraint constraint{.slave = model_.inclusion_dof(n) + d, .terms = {}};
+        if (d < 2)
+          constraint.terms.push_back(
+              {[](const Point&, double) { return 0.0; }, Point{}, static_cast<int>(d), 1, kFaces});
+        simulation_.constraints->add(std::move(constraint));
+      }
+    }
+  }
+
+  Simulation& simulation_;
+  const PointModel& model_;
+  const Body& body_;
+  std::array<std::optional<FaceLoad>, kFaces> faces_;
+  std::array<Location, kFaces> face_at_;
+  std::vector<bool> loaded_;  // entries that a set's load has taken
+};
+
+/// Fills the initial state of the body's points. What is prescribed comes from the loads when the run starts.
+class InitialBuilder {
+ public:
+  InitialBuilder(Simulation& simulation, std::size_t dofs)
+      : simulation_(simulation), displaced_(dofs, false), moving_(dofs, false) {}
+
+  void build() {
+    for (const InitialInput& initial : simulation_.input.initials) {
+      check_inclusions(initial);
+      for (const std::vector<std::size_t>& points : points_of(initial)) {
+        fill(initial, "displacement", initial.displacement, points, simulation_.initial_u, displaced_);
+        fill(initial, "velocity", initial.velocity, points, simulation_.initial_v, moving_);
+      }
+    }
+  }
+
+ private:
+  /// An inclusion would stay behind the body around it.
+  void check_inclusions(const InitialInput& initial) const {
+    const auto& inclusions = simulation_.input.inclusions;
+    const bool free = std::any_of(inclusions.begin(), inclusions.end(),
+                                  [](const InclusionInput& inclusion) { return inclusion.motion == "free"; });
+    if (initial.on.empty() && free)
+      throw InputError(
+          initial.at,
+          "initial: the body has inclusions that are free to move, and they start at rest; expected "
+          "`on` with the points that do not, or inclusions with motion = \"fixed\"");
+  }
+
+  [[nodiscard]] std::vector<std::vector<std::size_t>> points_of(const InitialInput& initial) const {
+    std::vector<std::vector<std::size_t>> lists;
+    for (const Named& on : initial.on) lists.push_back(simulation_.set(on.text).points);
+    if (!lists.empty()) return lists;
+    lists.emplace_back(simulation_.body->points.size());
+    std::iota(lists.front().begin(), lists.front().end(), std::size_t{0});
+    return lists;
+  }
+
+  void fill(const InitialInput& initial, const char* what, const std::vector<ComponentInput>& components,
+            const std::vector<std::size_t>& points, std::vector<double>& state, std::vector<bool>& given) {
+    for (std::size_t axis = 0; axis < components.size(); ++axis) {
+      if (!components[axis].value) continue;
+      state.resize(given.size());
+      for (const std::size_t point : points) {
+        const std::size_t entry = simulation_.entry(axis, point);
+        if (given[entry])
+          throw InputError(
+              initial.at,
+              fmt::format("initial: component {} of the {} is given twice for the point at ({:.4g}, "
+                          "{:.4g}, {:.4g}) m; expected sets without common points, or other "
+                          "components \"free\"",
+                          axis, what, place(point)[0], place(point)[1], place(point)[2]));
+        given[entry] = true;
+        state[entry] = (*components[axis].value)(Variables{.position = place(point)});
+        if (!std::isfinite(state[entry]))
+          throw InputError(
+              initial.at,
+              fmt::format("initial: component {} of the {} is no finite number at ({:.4g}, {:.4g}, "
+                          "{:.4g}) m",
+                          axis, what, place(point)[0], place(point)[1], place(point)[2]));
+      }
+    }
+  }
+
+  [[nodiscard]] Point place(std::size_t point) const {
+    return simulation_.body->position(simulation_.body->points[point]);
+  }
+
+  Simulation& simulation_;
+  std::vector<bool> displaced_, moving_;  // entries that are given already
+};
+
+}  // namespace
+
+void build_loads(Simulation& simulation, const PointModel& model) {
+  LoadBuilder(simulation, model).build();
+}
+
+void build_initial(Simulation& simulation, std::size_t dofs) {
+  InitialBuilder(simulation, dofs).build();
+}
+
+}  // namespace riven

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+
+#include "input/case.hpp"
+#include "peridynamics/point_model.hpp"
+#include "simulation/simulation.hpp"
+
+namespace riven {
+
+// The steps of build_simulation, a file each. All throw InputError with the place in the case file.
+
+/// Points and bonds, with ghost points behind the edges that have a load.
+Body make_body(const Case& in);
+
+/// The points of a set; an empty one is an error.
+PointSet make_set(const SetInput& in, const Body& body);
+
+std::unique_ptr<PointModel> make_model(const Case& in, Body body);
+
+/// Turns the loads into constraints on the state of the model.
+void build_loads(Simulation& simulation, const PointModel& model);
+
+/// Fills the initial state of the body's points. What is prescribed comes from the loads when the run starts.
+void build_initial(Simulation& simulation, std::size_t dofs);
+
+}  // namespace riven
