@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -80,13 +81,20 @@ struct ModelInput {               // [model]
 
 struct MaterialInput {  // [material.NAME]
   std::string name;
-  std::string law;                       // "neo-hookean", "mooney-rivlin", "yeoh", "linear-elastic"
-  double density = 0;                    // kg/m^3
-  std::optional<double> youngs_modulus;  // neo-hookean: one of E, mu, c10
-  std::optional<double> poissons_ratio, critical_stretch;  // linear-elastic
-  std::optional<double> shear_modulus;
-  std::optional<double> c10, c01, c20, c30;  // Pa
+  std::string law;     // a name among those of material/law.hpp
+  double density = 0;  // kg/m^3
+  // What the law's own keys say, in SI, by key; a key that is not given has no value and an empty list.
+  std::map<std::string, std::optional<double>> numbers;
+  std::map<std::string, std::vector<double>> lists;
+  std::optional<double> bulk_modulus;      // Pa; without, a rubber is incompressible
+  std::string volumetric;                  // "quadratic" (if empty, too) or "logarithmic"
+  std::optional<double> critical_stretch;  // pmb
   Location at;
+
+  [[nodiscard]] std::optional<double> number(const std::string& key) const {
+    const auto found = numbers.find(key);
+    return found == numbers.end() ? std::nullopt : found->second;
+  }
 };
 
 /// One component of a displacement: a function of x, y, z and stretch or t, or free.

@@ -42,48 +42,4 @@ Format describe(ModelInput& model) {
               .applies(kind("pmb"))}};
 }
 
-Format describe(MaterialInput& m, const Case& c) {
-  const auto law = [&m](std::vector<std::string> laws) { return When{"law", &m.law, std::move(laws)}; };
-  const auto modulus = [](std::optional<double>& to, Range range) {
-    return Quantity{&to, dimension::pressure, range};
-  };
-  return {
-      .doc = "A constitutive law and its parameters. For now a case has exactly one material.",
-      .at = &m.at,
-      .keys =
-          {Key{"law", Text{&m.law, {"neo-hookean", "mooney-rivlin", "yeoh", "linear-elastic"}},
-               "The constitutive law; `linear-elastic` belongs to the model `pmb`, the others to membranes."}
-               .required(),
-           Key{"density", Quantity{&m.density, dimension::density, positive}, "Needed where inertia counts."}
-               .required_if(When{"solver.method", &c.solver.method, {"verlet"}}),
-           Key{"youngs_modulus", modulus(m.youngs_modulus, positive), "Young's modulus."}
-               .applies(law({"neo-hookean", "linear-elastic"}))
-               .required_if(law({"linear-elastic"})),
-           Key{"poissons_ratio", Quantity{&m.poissons_ratio, dimension::none, any_number},
-               "To be checked: the model `pmb` has one of its own."}
-               .applies(law({"linear-elastic"})),
-           Key{"critical_stretch", Quantity{&m.critical_stretch, dimension::none, positive},
-               "Elongation over length at which a bond breaks for good; without it none breaks."}
-               .applies(law({"linear-elastic"})),
-           Key{"shear_modulus", modulus(m.shear_modulus, positive), "Shear modulus."}.applies(
-               law({"neo-hookean"})),
-           Key{"c10", modulus(m.c10, any_number), "First parameter of the law."}.required_if(
-               law({"mooney-rivlin", "yeoh"})),
-           Key{"c01", modulus(m.c01, any_number), "Second parameter."}
-               .applies(law({"mooney-rivlin"}))
-               .required(),
-           Key{"c20", modulus(m.c20, any_number), "Second parameter."}.applies(law({"yeoh"})).otherwise("0"),
-           Key{"c30", modulus(m.c30, any_number), "Third parameter."}.applies(law({"yeoh"})).otherwise("0")},
-      .groups = {{{"youngs_modulus", "shear_modulus", "c10"}, true, law({"neo-hookean"})}},
-      .finish = [&m, &c](const Check& check) {
-        if (c.model.kind == "membrane-bond" && m.law != "neo-hookean")
-          check.fail("law", fmt::format("found \"{}\" with model.kind = \"membrane-bond\", whose bonds are "
-                                        "neo-Hookean; expected \"neo-hookean\"",
-                                        m.law));
-        const double shear = 2 * (m.c10.value_or(1) + m.c01.value_or(0));
-        if (shear <= 0)
-          check.fail("c10", "gives a shear modulus of zero or less; expected c10 + c01 above 0");
-      }};
-}
-
 }  // namespace riven

@@ -1,58 +1,369 @@
 #include "material/material.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <cmath>
+#include <limits>
+
+#include "material/principal.hpp"
 
 namespace riven {
 
 namespace {
 
-using Vector4 = Eigen::Vector4d;
-using Matrix4 = Eigen::Matrix4d;
+using Matrix2 = Eigen::Matrix2d;
+using Matrix3 = Eigen::Matrix3d;
+using Tangent2 = PlaneResponse::Tangent;
+using Tangent3 = Response::Tangent;
 
-Vector4 flat(const Eigen::Matrix2d& m) {
-  return {m(0, 0), m(0, 1), m(1, 0), m(1, 1)};
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+
+// ---- three dimensions ----
+
+/// U'(J) and U''(J), U itself returned.
+double volume_energy(const Volumetric& volumetric, double j, double& first, double& second) {
+  const double k = volumetric.bulk_modulus;
+  if (volumetric.form == Volumetric::Form::quadratic) {
+    first = k * (j - 1);
+    second = k;
+    return 0.5 * k * (j - 1) * (j - 1);
+  }
+  first = 0.5 * k * (j - 1 / j);
+  second = 0.5 * k * (1 + 1 / (j * j));
+  return 0.25 * k * (j * j - 1 - 2 * std::log(j));
 }
 
-/// B_iJkL = -G_iL G_kJ, the derivative of G = F^-T.
-Matrix4 derivative_of_inverse_transpose(const Eigen::Matrix2d& g) {
-  Matrix4 b;
-  for (int i = 0; i < 2; ++i)
-    for (int J = 0; J < 2; ++J)
-      for (int k = 0; k < 2; ++k)
-        for (int L = 0; L < 2; ++L) b(2 * i + J, 2 * k + L) = -g(i, L) * g(k, J);
-  return b;
+/// W(J^(-2/3) I1, J^(-4/3) I2): the derivatives of eq. (3) to (6) with respect to F.
+template <OfInvariants L>
+double isochoric(const L& law, const Matrix3& f, double j, const Matrix3& g, Matrix3& stress,
+                 Tangent3* tangent) {
+  const Matrix3 c = f.transpose() * f, fc = f * c;
+  const double i1 = c.trace(), i2 = 0.5 * (i1 * i1 - c.squaredNorm());
+  const double a = std::pow(j, -2.0 / 3), b = a * a;
+  const InvariantEnergy e = law(a * i1, b * i2);
+  const Matrix3 d1 = 2 * a * (f - i1 / 3 * g), d2 = 2 * b * (i1 * f - fc - 2.0 / 3 * i2 * g);
+  stress = e.w1 * d1 + e.w2 * d2;
+  if (tangent == nullptr) return e.w;
+
+  const auto F = flat<3>(f), G = flat<3>(g), D1 = flat<3>(d1), D2 = flat<3>(d2);
+  const auto I2 = flat<3>(Matrix3(2 * (i1 * f - fc)));  // dI2/dF
+  const Tangent3 B = derivative_of_inverse_transpose<3>(g), unit = Tangent3::Identity(),
+                 GG = G * G.transpose();
+  const Matrix3 left = f * f.transpose();
+  Tangent3 dfc;  // derivative of F C
+  for (int i = 0; i < 3; ++i)
+    for (int J = 0; J < 3; ++J)
+      for (int k = 0; k < 3; ++k)
+        for (int K = 0; K < 3; ++K)
+          dfc(3 * i + J, 3 * k + K) = (i == k ? c(K, J) : 0) + f(i, K) * f(k, J) + (J == K ? left(i, k) : 0);
+  const auto both = [](const auto& x, const auto& y) {
+    return Tangent3(x * y.transpose() + y * x.transpose());
+  };
+  const Tangent3 dd1 = a * (2 * unit - 4.0 / 3 * both(G, F) + i1 * (4.0 / 9 * GG - 2.0 / 3 * B));
+  const Tangent3 dd2 = b * (2 * (2 * F * F.transpose() + i1 * unit - dfc) - 4.0 / 3 * both(G, I2) +
+                            i2 * (16.0 / 9 * GG - 4.0 / 3 * B));
+  *tangent = e.w1 * dd1 + e.w2 * dd2 + e.w11 * D1 * D1.transpose() + e.w12 * both(D1, D2) +
+             e.w22 * D2 * D2.transpose();
+  return e.w;
+}
+
+/// The same of J^(-1/3) times the principal stretches, eq. (7).
+template <OfStretches L>
+double isochoric(const L& law, const Matrix3& f, double j, const Matrix3& /*g*/, Matrix3& stress,
+                 Tangent3* tangent) {
+  const auto energy = [&](const Eigen::Vector3d& l) {
+    PrincipalEnergy<3> e;
+    Eigen::Vector3d t, d;
+    for (int a = 0; a < 3; ++a) {
+      const StretchEnergy one = law(std::cbrt(1 / j) * l(a));
+      e.w += one.f;
+      t(a) = one.t;
+      d(a) = one.d;
+    }
+    e.t = t.array() - t.mean();
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) e.d(a, b) = (a == b ? d(a) : 0) - (d(a) + d(b)) / 3 + d.sum() / 9;
+    return e;
+  };
+  return principal_response<3>(f, energy, stress, tangent);
+}
+
+template <class L>
+double evaluate(const L& law, const std::optional<Volumetric>& volumetric, const Matrix3& f, Matrix3& stress,
+                Tangent3* tangent) {
+  const double j = f.determinant();
+  if constexpr (OfGradient<L>) {
+    if (L::objective && !(j > 0)) return kNotANumber;
+    return law(f, stress, tangent);
+  } else {
+    if (!volumetric || !(j > 0)) return kNotANumber;
+    const Matrix3 g = f.inverse().transpose();
+    const double w = isochoric(law, f, j, g, stress, tangent);
+    double first = 0, second = 0;
+    const double u = volume_energy(*volumetric, j, first, second);
+    stress += first * j * g;
+    if (tangent != nullptr) {
+      const auto G = flat<3>(g);
+      *tangent += (second * j * j + first * j) * G * G.transpose() +
+                  first * j * derivative_of_inverse_transpose<3>(g);
+    }
+    return w + u;
+  }
+}
+
+// ---- in the plane ----
+
+Matrix3 in_space(const Matrix2& f, double thickness) {
+  Matrix3 whole = Matrix3::Identity();
+  whole.topLeftCorner<2, 2>() = f;
+  whole(2, 2) = thickness;
+  return whole;
+}
+
+constexpr int kInPlane[4] = {0, 1, 3, 4};  // components of the plane in a tensor of space
+constexpr int kAcross = 8;
+
+template <class L>
+double plane_strain_response(const L& law, const std::optional<Volumetric>& volumetric, const Matrix2& f,
+                             Matrix2& stress, Tangent2* tangent) {
+  Matrix3 whole;
+  Tangent3 whole_tangent;
+  const double w =
+      evaluate(law, volumetric, in_space(f, 1), whole, tangent != nullptr ? &whole_tangent : nullptr);
+  stress = whole.topLeftCorner<2, 2>();
+  for (int r = 0; tangent != nullptr && r < 4; ++r)
+    for (int c = 0; c < 4; ++c) (*tangent)(r, c) = whole_tangent(kInPlane[r], kInPlane[c]);
+  return w;
+}
+
+/// Thickness stretch without stress across the plane, by the secant method on the second Piola-Kirchhoff
+/// stress, which does not vanish because a sheet collapses. The first guess is exact for small strain.
+template <class L>
+double free_thickness(const L& law, const std::optional<Volumetric>& volumetric, const SmallStrain& moduli,
+                      const Matrix2& f) {
+  constexpr int kMost = 50;
+  constexpr double kConverged = 1e-14, kAccepted = 1e-10;  // of the longitudinal modulus
+  const double nu = moduli.poissons_ratio(), area = f.determinant(), modulus = moduli.longitudinal();
+  if (!(area > 0)) return kNotANumber;
+  const auto across = [&](double thickness) {
+    Matrix3 stress;
+    evaluate(law, volumetric, in_space(f, thickness), stress, nullptr);
+    return stress(2, 2) / (thickness * modulus);
+  };
+  double last = std::pow(area, -nu / (1 - nu)), last_stress = across(last), next = last * (1 - last_stress);
+  for (int n = 0; n < kMost && std::abs(last_stress) > kConverged && next != last; ++n) {
+    next = std::min(std::max(next, 0.5 * last), 2 * last);
+    const double stress = across(next), slope = (stress - last_stress) / (next - last);
+    last = next;
+    last_stress = stress;
+    next = last - stress / slope;
+    if (!std::isfinite(next)) break;
+  }
+  return std::abs(last_stress) < kAccepted ? last : kNotANumber;
+}
+
+/// Compressible sheet: the response of space at that thickness, condensed.
+template <class L>
+double free_sheet(const L& law, const std::optional<Volumetric>& volumetric, const SmallStrain& moduli,
+                  const Matrix2& f, Matrix2& stress, Tangent2* tangent) {
+  const double thickness = free_thickness(law, volumetric, moduli, f);
+  if (!(thickness > 0)) return kNotANumber;
+  Matrix3 whole;
+  Tangent3 a;
+  const double w =
+      evaluate(law, volumetric, in_space(f, thickness), whole, tangent != nullptr ? &a : nullptr);
+  stress = whole.topLeftCorner<2, 2>();
+  for (int r = 0; tangent != nullptr && r < 4; ++r)
+    for (int c = 0; c < 4; ++c)
+      (*tangent)(r, c) = a(kInPlane[r], kInPlane[c]) -
+                         a(kInPlane[r], kAcross) * a(kAcross, kInPlane[c]) / a(kAcross, kAcross);
+  return w;
+}
+
+/// Incompressible sheet in closed form, eq. (9) to (11).
+template <OfInvariants L>
+double incompressible_sheet(const L& law, const Matrix2& f, Matrix2& stress, Tangent2* tangent) {
+  const double j2 = f.determinant() * f.determinant(), t = f.squaredNorm();
+  const InvariantEnergy w = law(t + 1 / j2, j2 + t / j2);
+  const Matrix2 g = f.inverse().transpose();
+  const Matrix2 d1 = 2 * (f - g / j2), d2 = 2 * (j2 * g + f / j2 - t / j2 * g);
+  stress = w.w1 * d1 + w.w2 * d2;
+  if (tangent == nullptr) return w.w;
+  const auto F = flat<2>(f), G = flat<2>(g), D1 = flat<2>(d1), D2 = flat<2>(d2);
+  const Tangent2 unit = Tangent2::Identity(), B = derivative_of_inverse_transpose<2>(g);
+  const Tangent2 GG = G * G.transpose(), FG = F * G.transpose();
+  const Tangent2 dd1 = 2 * (unit + 2 / j2 * GG - 1 / j2 * B);
+  const Tangent2 dd2 =
+      2 * (2 * j2 * GG + j2 * B + unit / j2 - 2 / j2 * (FG + FG.transpose()) + 2 * t / j2 * GG - t / j2 * B);
+  *tangent = w.w1 * dd1 + w.w2 * dd2 + w.w11 * D1 * D1.transpose() +
+             w.w12 * (D1 * D2.transpose() + D2 * D1.transpose()) + w.w22 * D2 * D2.transpose();
+  return w.w;
+}
+
+/// The same with the third stretch 1 / (l1 l2).
+template <OfStretches L>
+double incompressible_sheet(const L& law, const Matrix2& f, Matrix2& stress, Tangent2* tangent) {
+  const auto energy = [&](const Eigen::Vector2d& l) {
+    const StretchEnergy one = law(l(0)), two = law(l(1)), across = law(1 / (l(0) * l(1)));
+    PrincipalEnergy<2> e;
+    e.w = one.f + two.f + across.f;
+    e.t << one.t - across.t, two.t - across.t;
+    e.d << one.d + across.d, across.d, across.d, two.d + across.d;
+    return e;
+  };
+  return principal_response<2>(f, energy, stress, tangent);
+}
+
+template <class L>
+double plane_stress_response(const L& law, const std::optional<Volumetric>& volumetric,
+                             const SmallStrain& moduli, const Matrix2& f, Matrix2& stress,
+                             Tangent2* tangent) {
+  if constexpr (!OfGradient<L>) {
+    if (!volumetric) return f.determinant() > 0 ? incompressible_sheet(law, f, stress, tangent) : kNotANumber;
+  }
+  return free_sheet(law, volumetric, moduli, f, stress, tangent);
+}
+
+/// Where energies are no finite numbers the rest is none either.
+template <int D>
+ResponseIn<D> checked(ResponseIn<D> response) {
+  if (!std::isfinite(response.energy)) {
+    response.stress.setConstant(kNotANumber);
+    response.tangent.setConstant(kNotANumber);
+  }
+  return response;
+}
+
+/// Calls answer(F, P) for n gradients.
+template <int D, class Answer>
+std::size_t for_each_gradient(std::size_t n, const double* const* f, double* const* p, double* energy,
+                              const Answer& answer) {
+  std::size_t unanswered = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    Eigen::Matrix<double, D, D> gradient, stress;
+    for (int c = 0; c < D * D; ++c) gradient(c / D, c % D) = f[c][i];
+    energy[i] = answer(gradient, stress);
+    if (!std::isfinite(energy[i])) {
+      ++unanswered;
+      energy[i] = kNotANumber;
+      stress.setConstant(kNotANumber);
+    }
+    for (int c = 0; c < D * D; ++c) p[c][i] = stress(c / D, c % D);
+  }
+  return unanswered;
 }
 
 }  // namespace
 
-PlaneResponse Material::plane_stress(const Eigen::Matrix2d& f) const {
-  const double j2 = f.determinant() * f.determinant();
-  const double t = f.squaredNorm();
-  const double i1 = t + 1 / j2;
-  const double i2 = j2 + t / j2;
-  const InvariantEnergy w = std::visit([&](const auto& energy) { return energy(i1, i2); }, law);
+double SmallStrain::youngs_modulus() const {
+  return std::isinf(bulk) ? 3 * shear : 9 * bulk * shear / (3 * bulk + shear);
+}
 
-  const Eigen::Matrix2d inverse_transpose = f.inverse().transpose();
-  const Vector4 F = flat(f);
-  const Vector4 G = flat(inverse_transpose);
-  const Vector4 d1 = 2 * (F - G / j2);
-  const Vector4 d2 = 2 * (j2 * G + F / j2 - t / j2 * G);
-  const Vector4 p = w.w1 * d1 + w.w2 * d2;
+double SmallStrain::poissons_ratio() const {
+  return std::isinf(bulk) ? 0.5 : (3 * bulk - 2 * shear) / (6 * bulk + 2 * shear);
+}
 
-  const Matrix4 unit = Matrix4::Identity();
-  const Matrix4 B = derivative_of_inverse_transpose(inverse_transpose);
-  const Matrix4 GG = G * G.transpose();
-  const Matrix4 FG = F * G.transpose();
-  const Matrix4 dd1 = 2 * (unit + 2 / j2 * GG - 1 / j2 * B);
-  const Matrix4 dd2 =
-      2 * (2 * j2 * GG + j2 * B + unit / j2 - 2 / j2 * (FG + FG.transpose()) + 2 * t / j2 * GG - t / j2 * B);
+bool Material::incompressible() const {
+  return std::visit([&](const auto& l) { return !OfGradient<std::decay_t<decltype(l)>> && !volumetric; },
+                    law);
+}
 
-  PlaneResponse response;
-  response.energy = w.w;
-  response.stress << p(0), p(1), p(2), p(3);
-  response.tangent = w.w1 * dd1 + w.w2 * dd2 + w.w11 * d1 * d1.transpose() +
-                     w.w12 * (d1 * d2.transpose() + d2 * d1.transpose()) + w.w22 * d2 * d2.transpose();
-  return response;
+bool Material::objective() const {
+  return !std::holds_alternative<LinearElastic>(law);
+}
+
+SmallStrain Material::small_strain() const {
+  const double bulk = volumetric ? volumetric->bulk_modulus : std::numeric_limits<double>::infinity();
+  return std::visit(
+      [&](const auto& l) -> SmallStrain {
+        using L = std::decay_t<decltype(l)>;
+        if constexpr (OfInvariants<L>) {
+          const InvariantEnergy rest = l(3.0, 3.0);
+          return {2 * (rest.w1 + rest.w2), bulk};
+        } else if constexpr (OfStretches<L>) {
+          return {0.5 * l(1.0).d, bulk};
+        } else {
+          return {l.moduli.shear(), l.moduli.lame() + 2.0 / 3 * l.moduli.shear()};
+        }
+      },
+      law);
+}
+
+Response Material::solid(const Matrix3& f) const {
+  Response r;
+  r.energy = std::visit([&](const auto& l) { return evaluate(l, volumetric, f, r.stress, &r.tangent); }, law);
+  return checked(r);
+}
+
+PlaneResponse Material::plane_strain(const Matrix2& f) const {
+  PlaneResponse r;
+  r.energy = std::visit(
+      [&](const auto& l) { return plane_strain_response(l, volumetric, f, r.stress, &r.tangent); }, law);
+  return checked(r);
+}
+
+PlaneResponse Material::plane_stress(const Matrix2& f) const {
+  PlaneResponse r;
+  const SmallStrain moduli = small_strain();
+  r.energy = std::visit(
+      [&](const auto& l) { return plane_stress_response(l, volumetric, moduli, f, r.stress, &r.tangent); },
+      law);
+  return checked(r);
+}
+
+double Material::thickness_stretch(const Matrix2& f) const {
+  if (incompressible()) return 1 / f.determinant();
+  const SmallStrain moduli = small_strain();
+  return std::visit([&](const auto& l) { return free_thickness(l, volumetric, moduli, f); }, law);
+}
+
+std::size_t Material::stress(Kinematics kinematics, std::size_t n, const double* const* f, double* const* p,
+                             double* energy) const {
+  const SmallStrain moduli = small_strain();
+  return std::visit(
+      [&](const auto& l) {
+        switch (kinematics) {
+          case Kinematics::solid:
+            return for_each_gradient<3>(n, f, p, energy, [&](const Matrix3& gradient, Matrix3& stress) {
+              return evaluate(l, volumetric, gradient, stress, nullptr);
+            });
+          case Kinematics::plane_strain:
+            return for_each_gradient<2>(n, f, p, energy, [&](const Matrix2& gradient, Matrix2& stress) {
+              return plane_strain_response(l, volumetric, gradient, stress, nullptr);
+            });
+          default:
+            return for_each_gradient<2>(n, f, p, energy, [&](const Matrix2& gradient, Matrix2& stress) {
+              return plane_stress_response(l, volumetric, moduli, gradient, stress, nullptr);
+            });
+        }
+      },
+      law);
+}
+
+namespace {
+
+/// Roots of the eigenvalues of an acoustic tensor over the density, with their signs.
+template <int D>
+Eigen::Matrix<double, D, 1> speeds(const Eigen::Matrix<double, D * D, D * D>& a, double density,
+                                   const Eigen::Matrix<double, D, 1>& n) {
+  Eigen::Matrix<double, D, D> acoustic = Eigen::Matrix<double, D, D>::Zero();
+  for (int i = 0; i < D; ++i)
+    for (int k = 0; k < D; ++k)
+      for (int J = 0; J < D; ++J)
+        for (int L = 0; L < D; ++L) acoustic(i, k) += a(D * i + J, D * k + L) * n(J) * n(L);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D, D>> solver(acoustic, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues().unaryExpr(
+      [&](double value) { return std::copysign(std::sqrt(std::abs(value) / density), value); });
+}
+
+}  // namespace
+
+Eigen::Vector3d wave_speeds(const Material& material, const Matrix3& f, const Eigen::Vector3d& n) {
+  return speeds<3>(material.solid(f).tangent, material.density, n);
+}
+
+Eigen::Vector2d wave_speeds(const PlaneResponse& response, double density, const Eigen::Vector2d& n) {
+  return speeds<2>(response.tangent, density, n);
 }
 
 }  // namespace riven

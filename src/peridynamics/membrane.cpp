@@ -33,11 +33,19 @@ Eigen::Matrix2d matrix(const std::array<double, 4>& entries) {
   return Eigen::Map<const Eigen::Matrix<double, 2, 2, Eigen::RowMajor>>(entries.data());
 }
 
+InvariantLaw law_of(const Material& material) {
+  const auto law = invariant_law(material.law);
+  if (!law || !material.incompressible())
+    throw InputError("a membrane is incompressible, with a law W(I1, I2)");
+  return *law;
+}
+
 }  // namespace
 
 Membrane::Membrane(Body body, Material material, double stabilisation)
     : PointModel(std::move(body), material.density),
       material_(std::move(material)),
+      law_(law_of(material_)),
       stabilisation_(stabilisation),
       kernels_(membrane_kernels()) {
   if (this->body().dimension != 2)
@@ -139,7 +147,7 @@ std::vector<PlaneBond> Membrane::unshortened_bonds_of(std::size_t point) const {
 }
 
 double Membrane::stabilisation_modulus(std::size_t point) const {
-  return stabilisation_ * 0.5 * shear_modulus(material_.law) *
+  return stabilisation_ * 0.5 * material_.small_strain().shear *
          (body().complete[point] ? 1.0 : kCutFamilyStabilisation);
 }
 
@@ -249,7 +257,7 @@ std::size_t Membrane::points_by_gradient() const {
 }
 
 std::vector<std::string> Membrane::describe() const {
-  const double mu = shear_modulus(material_.law);
+  const double mu = material_.small_strain().shear;
   return {fmt::format("material {}: shear modulus {:.6g} Pa, Young's modulus {:.6g} Pa (incompressible)",
                       material_.name, mu, 3 * mu),
           fmt::format("weights: {} points by least squares, {} by the deformation gradient",
@@ -336,7 +344,7 @@ std::array<double, 3> Membrane::family_curvature(std::size_t point) const {
   if (by_gradient(point)) {  // the energy is a function of F, and the one sum is F itself
     return {material_.plane_stress(2 * gradient(point)).tangent.norm(), 0, 0};
   }
-  const FamilyEnergy e = std::visit([&](const auto& law) { return family_energy(law, a, b); }, material_.law);
+  const FamilyEnergy e = std::visit([&](const auto& law) { return family_energy(law, a, b); }, law_);
   const FamilyEnergy k = stiffened_modulus(planes_.kappa[point], a, b);
   const double z2 = a - 2 * gradient(point).squaredNorm();
   const double waa = e.waa + z2 * k.waa, wab = e.wab + z2 * k.wab, wbb = e.wbb + z2 * k.wbb;

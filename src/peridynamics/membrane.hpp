@@ -26,7 +26,7 @@ struct MembraneBond {
 class Membrane final : public PointModel {
  public:
   /// `stabilisation`: factor G of the energy against short waves and folding (theory 5a, rule 5).
-  /// Throws InputError unless the body is two-dimensional.
+  /// Throws InputError unless the body is two-dimensional and the material incompressible, a law W(I1, I2).
   Membrane(Body body, Material material, double stabilisation);
 
   [[nodiscard]] std::optional<Breakdown> internal_force(std::span<const double> u,
@@ -112,6 +112,7 @@ class Membrane final : public PointModel {
   [[nodiscard]] std::array<double, 3> family_curvature(std::size_t point) const;
 
   Material material_;
+  InvariantLaw law_;  // the material's
   double stabilisation_ = 0;
   std::vector<ListedFamily> listed_;  // in order of their points
   ListedFamilyBonds listed_bonds_;

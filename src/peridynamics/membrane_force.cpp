@@ -30,9 +30,8 @@ void Membrane::update_points(std::span<const double> u) {
   collapsed_ = ordered_sum<std::size_t>(
       size,
       [&](std::size_t begin, std::size_t end) {
-        return body().on_lattice() != nullptr
-                   ? kernels_.lattice.respond(material_.law, lattice_, planes_, begin, end)
-                   : kernels_.list.respond(material_.law, list_, planes_, begin, end);
+        return body().on_lattice() != nullptr ? kernels_.lattice.respond(law_, lattice_, planes_, begin, end)
+                                              : kernels_.list.respond(law_, list_, planes_, begin, end);
       },
       kPiece);
   parallel_for(static_cast<std::ptrdiff_t>(listed_.size()),
@@ -81,8 +80,7 @@ void Membrane::respond_listed(const ListedFamily& family, std::span<const double
     set_point(i, response.energy + kappa * z2,
               {2 * v * kappa, 0, entries(v * (response.stress * family.inverse_shape - 2 * kappa * f))});
   } else {
-    const FamilyEnergy e =
-        std::visit([&](const auto& law) { return family_energy(law, a, b); }, material_.law);
+    const FamilyEnergy e = std::visit([&](const auto& law) { return family_energy(law, a, b); }, law_);
     const FamilyEnergy k = stiffened_modulus(kappa, a, b);
     set_point(i, e.w + k.w * z2,
               {2 * v * (e.wa + k.w + k.wa * z2), 4 * v * (e.wb + k.wb * z2), entries(-2 * v * k.w * f)});

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "body/bond_planes.hpp"
-#include "material/invariant_law.hpp"
+#include "material/law.hpp"
 #include "peridynamics/weights.hpp"
 
 namespace riven {

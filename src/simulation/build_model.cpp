@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "input/material_format.hpp"
 #include "peridynamics/bond_membrane.hpp"
 #include "peridynamics/membrane.hpp"
 #include "peridynamics/pmb.hpp"
@@ -10,25 +11,6 @@
 namespace riven {
 
 namespace {
-
-InvariantLaw make_law(const MaterialInput& in) {
-  if (in.law == "neo-hookean") {
-    if (in.youngs_modulus) return NeoHookean{*in.youngs_modulus / 6};  // E = 3 mu, mu = 2 C10
-    if (in.shear_modulus) return NeoHookean{*in.shear_modulus / 2};
-    return NeoHookean{*in.c10};
-  }
-  if (in.law == "mooney-rivlin") return MooneyRivlin{*in.c10, *in.c01};
-  return Yeoh{*in.c10, in.c20.value_or(0), in.c30.value_or(0)};
-}
-
-Material make_material(const MaterialInput& in) {
-  Material material{in.name, make_law(in), in.density};
-  if (!(shear_modulus(material.law) > 0))
-    throw InputError(
-        in.at, fmt::format("material.{}: the shear modulus is {:g} Pa; expected a law with a positive one",
-                           in.name, shear_modulus(material.law)));
-  return material;
-}
 
 BondMembraneSettings bond_settings(const ModelInput& in) {
   Loading loading = Loading::equibiaxial;
@@ -46,7 +28,8 @@ PmbSettings pmb_settings(const Case& in) {
         fmt::format("material.{}.critical_stretch: bonds break in motion only; expected method = "
                     "\"verlet\" in [solver], or no critical_stretch",
                     material.name));
-  PmbSettings settings{.youngs_modulus = *material.youngs_modulus, .density = material.density};
+  PmbSettings settings{.youngs_modulus = material.number("youngs_modulus").value(),
+                       .density = material.density};
   if (material.critical_stretch) settings.critical_stretch = *material.critical_stretch;
   settings.plane = in.model.plane == "strain" ? Plane::strain : Plane::stress;
   return settings;
@@ -55,12 +38,13 @@ PmbSettings pmb_settings(const Case& in) {
 /// Poisson's ratio is the model's; one that the user gave must be it.
 void check_poissons_ratio(const MaterialInput& in, const Pmb& model) {
   constexpr double kRounded = 0.005;  // 0.33 for 1/3
-  if (model.body().dimension == 1 || !in.poissons_ratio) return;
-  if (std::abs(*in.poissons_ratio - model.poissons_ratio()) <= kRounded) return;
+  const auto given = in.number("poissons_ratio");
+  if (model.body().dimension == 1 || !given) return;
+  if (std::abs(*given - model.poissons_ratio()) <= kRounded) return;
   throw InputError(in.at,
                    fmt::format("material.{}.poissons_ratio: found {:g}; the model \"pmb\" has {:.4g} here "
                                "(1/3 in plane stress, 1/4 otherwise)",
-                               in.name, *in.poissons_ratio, model.poissons_ratio()));
+                               in.name, *given, model.poissons_ratio()));
 }
 
 std::unique_ptr<PointModel> make_pmb(const Case& in, Body body) {
@@ -72,15 +56,34 @@ std::unique_ptr<PointModel> make_pmb(const Case& in, Body body) {
   return model;
 }
 
-/// Springs take the one law, membranes the others.
+/// Names of the laws of which something holds.
+template <class Holds>
+std::string laws_that(const Holds& holds) {
+  std::string names;
+  for_each_law([&]<class L>(const L& law) {
+    if (holds(law)) names.append(names.empty() ? "" : ", ").append(L::name);
+  });
+  return names;
+}
+
+/// Springs take Hooke's law, membranes what is incompressible and a function of the invariants.
 void check_law(const Case& in) {
   const MaterialInput& material = in.materials.front();
-  const bool springs = in.model.kind == "pmb", elastic = material.law == "linear-elastic";
-  if (springs != elastic)
+  const bool springs = in.model.kind == "pmb";
+  const auto fits = [springs]<class L>(const L&) {
+    return springs ? std::is_same_v<L, LinearElastic> : OfInvariants<L>;
+  };
+  for_each_law([&]<class L>(const L& law) {
+    if (material.law != L::name || fits(law)) return;
     throw InputError(material.at,
                      fmt::format("material.{}.law: the model \"{}\" has no law \"{}\"; expected {}",
-                                 material.name, in.model.kind, material.law,
-                                 springs ? "\"linear-elastic\"" : "neo-hookean, mooney-rivlin or yeoh"));
+                                 material.name, in.model.kind, material.law, laws_that(fits)));
+  });
+  if (material.bulk_modulus)
+    throw InputError(material.at,
+                     fmt::format("material.{}.bulk_modulus: the model \"{}\" keeps its volume; expected no "
+                                 "bulk_modulus",
+                                 material.name, in.model.kind));
 }
 
 }  // namespace

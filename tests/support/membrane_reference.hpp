@@ -85,13 +85,15 @@ class PlainMembrane {
     const bool whole = body.complete[i];
     const bool gradient = by_gradient(i);
     const double j2 = 3 * a * a - 2 * b, j4 = j2 * j2;
-    const double at_rest = stabilisation_ * 0.5 * shear_modulus(membrane_.material().law) * (whole ? 1 : 0.1);
+    const double at_rest =
+        stabilisation_ * 0.5 * membrane_.material().small_strain().shear * (whole ? 1 : 0.1);
     const double excess = gradient ? 0 : std::max(0.0, a / j4 - 1);  // architecture.md, The membrane
     const double kappa = at_rest * (1 + 3 * excess * excess), slope = at_rest * 6 * excess;
     double z2 = 0;
     for (const auto& [bond, xi, y] : bonds) z2 += bond.weight * (y - f * xi).squaredNorm() / xi.squaredNorm();
-    const InvariantEnergy e = std::visit(
-        [&](const auto& law) { return law(2 * a + 1 / j2, j2 + 2 * a / j2); }, membrane_.material().law);
+    const InvariantEnergy e =
+        std::visit([&](const auto& law) { return law(2 * a + 1 / j2, j2 + 2 * a / j2); },
+                   invariant_law(membrane_.material().law).value());
     const double wa = e.w1 * (2 - 6 * a / j4) + e.w2 * (6 * a + 2 / j2 - 12 * a * a / j4) +
                       z2 * slope * (1 / j4 - 12 * a * a / (j4 * j2));
     const double wb = e.w1 * 2 / j4 + e.w2 * (-2 + 4 * a / j4) + z2 * slope * 4 * a / (j4 * j2);

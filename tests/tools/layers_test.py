@@ -20,9 +20,9 @@ LAYERS = {
     "load": BOTTOM | {"material", "body", "model"},
     "solver": BOTTOM | {"linalg", "body", "model", "load"},  # asks the Model interface, never one model
     "output": BOTTOM,
-    "input": BOTTOM,
-    "verification": BOTTOM | {"input", "output"},
-    "report": BOTTOM | {"input", "output", "verification"},  # reads results, never models
+    "input": BOTTOM | {"material"},  # keys of laws
+    "verification": BOTTOM | {"material", "input", "output"},
+    "report": BOTTOM | {"material", "input", "output", "verification"},  # reads results, never models
 }
 LAYERS["simulation"] = set(LAYERS)
 LAYERS["app"] = set(LAYERS)

@@ -39,7 +39,7 @@ TEST(CaseReader, ReadsWhatIsWritten) {
   EXPECT_EQ((*c.sets.at(0).where)({{0.09, 0, 0}, 0, 1}), 1);
   EXPECT_EQ((*c.sets.at(0).where)({{0.11, 0, 0}, 0, 1}), 0);
   EXPECT_EQ(c.materials.at(0).name, "rubber");
-  EXPECT_DOUBLE_EQ(*c.materials[0].youngs_modulus, 0.109e9);
+  EXPECT_DOUBLE_EQ(*c.materials[0].number("youngs_modulus"), 0.109e9);
   ASSERT_EQ(c.loads.at(0).on.size(), 2U);
   EXPECT_EQ(c.loads[0].on[1].text, "right");
   EXPECT_DOUBLE_EQ((*c.loads[0].displacement[0].value)({{0.2, 0, 0}, 0, 3}), 0.4);
@@ -62,7 +62,7 @@ TEST(CaseReader, ReadsARunInTime) {
   EXPECT_EQ(c.inclusions.at(0).motion, "fixed");
   EXPECT_EQ(c.inclusions[1].motion, "free");
   EXPECT_DOUBLE_EQ(c.materials.at(0).density, 1100);
-  EXPECT_EQ(*c.materials[0].c30, 0);
+  EXPECT_EQ(*c.materials[0].number("c30"), 0);
   EXPECT_EQ(c.solver.until, 43e-6);
   EXPECT_EQ(*c.output.history_every, 0.5e-6);
   EXPECT_EQ(*c.probes.at(0).position, (Point{0.1, 0.02, 0}));

@@ -27,7 +27,7 @@ INSTANTIATE_TEST_SUITE_P(Membranes, Sheet, ::testing::ValuesIn(unit_laws()), law
 
 /// Size of the bond forces in a body: mu times thickness times spacing.
 double force_scale(const Membrane& membrane) {
-  return membrane.body().thickness * membrane.body().spacing * shear_modulus(membrane.material().law);
+  return membrane.body().thickness * membrane.body().spacing * membrane.material().small_strain().shear;
 }
 
 /// Whether a point has bonds that span the plane; one without has no stress of its own.
