@@ -13,10 +13,12 @@ Format describe(ModelInput& model) {
       .doc = "How points interact.",
       .at = &model.at,
       .keys = {
-          Key{"kind", Text{&model.kind, {"membrane", "membrane-bond", "pmb"}},
+          Key{"kind", Text{&model.kind, {"membrane", "membrane-bond", "pmb", "lps"}},
               "`membrane`: rubber sheets, state-based, for any loading and law. `membrane-bond`: the "
               "published bond-based one, to compare with. `pmb`: linear springs that break, for brittle "
-              "bodies in one, two or three dimensions."}
+              "bodies in one, two or three dimensions. `lps`: linear peridynamic solid, state-based, for "
+              "linear "
+              "elasticity with any Poisson's ratio in two or three dimensions."}
               .otherwise("\"membrane\""),
           Key{"stabilisation", Quantity{&model.stabilisation, dimension::none, not_negative},
               "Factor of the stabilisation energy; 0 switches it off."}
@@ -36,10 +38,14 @@ Format describe(ModelInput& model) {
               .otherwise("\"on\"")
               .applies(kind("membrane-bond")),
           Key{"plane", Text{&model.plane, {"stress", "strain"}},
-              "What holds a body in two dimensions across: nothing (Poisson's ratio 1/3), or rigid walls "
-              "(1/4)."}
+              "What holds a body in two dimensions across: nothing (with `pmb` Poisson's ratio is 1/3), or "
+              "rigid walls (1/4)."}
               .otherwise("\"stress\"")
-              .applies(kind("pmb"))}};
+              .applies(When{"kind", &model.kind, {"pmb", "lps"}}),
+          Key{"influence", Text{&model.influence, {"inverse", "constant"}},
+              "How much a bond counts by its length: as horizon over length, or all the same."}
+              .otherwise("\"inverse\"")
+              .applies(kind("lps"))}};
 }
 
 Format describe(MaterialInput& m, const Case& c) {
@@ -52,7 +58,8 @@ Format describe(MaterialInput& m, const Case& c) {
       .at = &m.at,
       .keys =
           {Key{"law", Text{&m.law, {"neo-hookean", "mooney-rivlin", "yeoh", "linear-elastic"}},
-               "The constitutive law; `linear-elastic` belongs to the model `pmb`, the others to membranes."}
+               "The constitutive law; `linear-elastic` belongs to the models `pmb` and `lps`, the others to "
+               "membranes."}
                .required(),
            Key{"density", Quantity{&m.density, dimension::density, positive}, "Needed where inertia counts."}
                .required_if(When{"solver.method", &c.solver.method, {"verlet"}}),
@@ -60,7 +67,7 @@ Format describe(MaterialInput& m, const Case& c) {
                .applies(law({"neo-hookean", "linear-elastic"}))
                .required_if(law({"linear-elastic"})),
            Key{"poissons_ratio", Quantity{&m.poissons_ratio, dimension::none, any_number},
-               "To be checked: the model `pmb` has one of its own."}
+               "Needed by the model `lps`; with `pmb` to be checked, which has one of its own."}
                .applies(law({"linear-elastic"})),
            Key{"critical_stretch", Quantity{&m.critical_stretch, dimension::none, positive},
                "Elongation over length at which a bond breaks for good; without it none breaks."}

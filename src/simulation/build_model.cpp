@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "peridynamics/bond_membrane.hpp"
+#include "peridynamics/lps.hpp"
 #include "peridynamics/membrane.hpp"
 #include "peridynamics/pmb.hpp"
 #include "simulation/build_parts.hpp"
@@ -72,10 +73,42 @@ std::unique_ptr<PointModel> make_pmb(const Case& in, Body body) {
   return model;
 }
 
-/// Springs take the one law, membranes the others.
+LpsSettings lps_settings(const Case& in) {
+  const MaterialInput& material = in.materials.front();
+  const auto fail = [&](const char* key, const std::string& what) {
+    throw InputError(material.at, fmt::format("material.{}.{}: {}", material.name, key, what));
+  };
+  if (!material.poissons_ratio)
+    fail("poissons_ratio", "missing; expected a number above -1 and below 0.5 for the model \"lps\"");
+  if (!(*material.poissons_ratio > -1 && *material.poissons_ratio < 0.5))
+    fail("poissons_ratio",
+         fmt::format("found {:g}; expected a number above -1 and below 0.5", *material.poissons_ratio));
+  if (material.critical_stretch)
+    fail("critical_stretch", "bonds of the model \"lps\" do not break yet; expected none, or kind = \"pmb\"");
+  return {.youngs_modulus = *material.youngs_modulus,
+          .poissons_ratio = *material.poissons_ratio,
+          .density = material.density,
+          .plane = in.model.plane == "strain" ? Plane::strain : Plane::stress,
+          .influence = in.model.influence == "constant" ? Influence::constant : Influence::inverse};
+}
+
+std::unique_ptr<PointModel> make_lps(const Case& in, Body body) {
+  if (!in.inclusions.empty())
+    throw InputError(in.inclusions.front().at,
+                     "inclusion: the model \"lps\" has no rigid inclusions; expected holes and cracks only");
+  const LpsSettings settings = lps_settings(in);
+  try {
+    return std::make_unique<Lps>(std::move(body), settings);
+  } catch (const InputError& error) {
+    throw InputError(in.model.at, std::string("model: ") + error.what());
+  }
+}
+
+/// Linear solids take the one law, membranes the others.
 void check_law(const Case& in) {
   const MaterialInput& material = in.materials.front();
-  const bool springs = in.model.kind == "pmb", elastic = material.law == "linear-elastic";
+  const bool springs = in.model.kind == "pmb" || in.model.kind == "lps",
+             elastic = material.law == "linear-elastic";
   if (springs != elastic)
     throw InputError(material.at,
                      fmt::format("material.{}.law: the model \"{}\" has no law \"{}\"; expected {}",
@@ -88,6 +121,7 @@ void check_law(const Case& in) {
 std::unique_ptr<PointModel> make_model(const Case& in, Body body) {
   check_law(in);
   if (in.model.kind == "pmb") return make_pmb(in, std::move(body));
+  if (in.model.kind == "lps") return make_lps(in, std::move(body));
   const Material material = make_material(in.materials.front());
   try {
     if (in.model.kind == "membrane-bond")
