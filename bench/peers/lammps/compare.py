@@ -149,10 +149,29 @@ def compare_memory(options):
             print(f"Riven, {name}: {run_riven(options, listed)['bytes/bond']:.1f} (as the benchmark counts)")
 
 
-def plain_positions(side, steps, as_shipped):
-    """Velocity Verlet with a plain sum over bonds, in the order and with the material of pmb.lmp."""
+def springs(bonds, extensions):
+    """PMB's forces along the bonds (N/m^6)."""
+    micromodulus = 12 * 72e9 / (math.pi * (3e-3) ** 4)
+    return [micromodulus * e / length for (_, _, length, _), e in zip(bonds, extensions)]
+
+
+def solid(bonds, extensions):
+    """Those of the linear peridynamic solid, whose influence is 1 / length: of each bond's first point."""
+    bulk, shear = 72e9 / (3 * (1 - 2 * 0.22)), 72e9 / (2 * (1 + 0.22))
+    moment, dilatation = collections.Counter(), collections.Counter()
+    for (i, _, length, volume), e in zip(bonds, extensions):
+        moment[i] += length * volume
+        dilatation[i] += 3 * e * volume
+    forces = []
+    for (i, _, length, _), e in zip(bonds, extensions):
+        theta = dilatation[i] / moment[i]
+        forces.append((3 * bulk * theta + 15 * shear * (e - theta * length / 3) / length) / moment[i])
+    return forces
+
+
+def plain_positions(model, side, steps, as_shipped):
+    """Velocity Verlet with plain sums over bonds, in the order and with the material of block.lmp."""
     dx, volume, density, dt = 1e-3, 1e-9, 2440.0, 5e-8
-    micromodulus = 12 * 72e9 / (math.pi * (3 * dx) ** 4)
     cells = [cell[::-1] for cell in itertools.product(range(side), repeat=3)]  # x runs fastest
     start = [[(k + 0.5 - side / 2) * dx for k in cell] for cell in cells]
     index = {cell: i for i, cell in enumerate(cells)}
@@ -163,18 +182,21 @@ def plain_positions(side, steps, as_shipped):
             length = math.hypot(*offset)
             part = min(1.0, 3.0001 - length + 0.5) if as_shipped else 1.0
             if j is not None:
-                bonds.append((i, j, length * dx, micromodulus * part * volume))
+                bonds.append((i, j, length * dx, part * volume))
     wave = math.pi / (side * dx)
     x = [list(p) for p in start]
     v = [[0.01 * math.sin(wave * p[k]) for k in (0, 2, 1)] for p in start]
 
     def kick(duration):
-        for i, j, length, stiffness in bonds:
-            d = [b - a for a, b in zip(x[i], x[j])]
-            r = math.hypot(*d)
-            factor = stiffness * (r / length - 1) / r / density * duration
+        lengths = [math.dist(x[i], x[j]) for i, j, _, _ in bonds]
+        forces = {"pmb": springs, "lps": solid}[model](bonds, [r - bond[2] for bond, r in zip(bonds, lengths)])
+        for (i, j, _, part), r, force in zip(bonds, lengths, forces):
+            factor = force * part / r / density * duration
             for k in range(3):
-                v[i][k] += factor * d[k]
+                pull = factor * (x[j][k] - x[i][k])
+                v[i][k] += pull
+                if model == "lps":  # pulls at both ends; of springs, each end has its own bond
+                    v[j][k] -= pull
 
     for _ in range(steps):
         kick(dt / 2)
@@ -190,7 +212,7 @@ def check(options):
     side, steps, tolerance = 6, 20, 1e-8
     worst = 0.0
     for as_shipped in (False, True):
-        start, expected = plain_positions(side, steps, as_shipped)
+        start, expected = plain_positions(options.model, side, steps, as_shipped)
         with tempfile.NamedTemporaryFile("r") as dump:
             run_lammps(options, side, steps, as_shipped, dump=dump.name)
             rows = dump.read().split("ITEM: ATOMS")[1].splitlines()[1:]
