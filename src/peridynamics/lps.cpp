@@ -175,13 +175,13 @@ void Lps::sort_blocks(const LatticeBonds& on) {
     lattice_.uniform_volume = first;
 }
 
-/// Shows the kernels a state and where the forces go.
-void Lps::look_at(std::span<const double> u, std::span<double> force) {
+/// Shows the kernels a state and where their result goes.
+void Lps::look_at(std::span<const double> u, std::span<double> out) {
   const std::size_t size = body().size();
   const auto dimension = static_cast<std::size_t>(body().dimension);
   for (std::size_t d = 0; d < dimension; ++d) {
     lattice_.u[d] = u.data() + d * size;
-    lattice_.force[d] = list_.force[d] = force.empty() ? nullptr : force.data() + d * size;
+    lattice_.out[d] = list_.out[d] = out.empty() ? nullptr : out.data() + d * size;
   }
   parallel_pieces(list_.points.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -189,23 +189,39 @@ void Lps::look_at(std::span<const double> u, std::span<double> force) {
   });
 }
 
-std::optional<Breakdown> Lps::internal_force(std::span<const double> u, std::span<double> force) {
-  look_at(u, force);
-  const auto sweep = [&](const auto& kernel, auto& bonds) {
-    parallel_pieces(
-        body().size(), [&](std::size_t begin, std::size_t end) { kernel(bonds, begin, end); }, kPiece);
-  };
-  if (body().on_lattice() != nullptr) {
-    sweep(kernels_.lattice.respond, lattice_);
-    sweep(kernels_.lattice.pull, lattice_);
-    return std::nullopt;
-  }
-  sweep(kernels_.list.respond, list_);
+/// Two sweeps over the points: the second one reads the tensions that the first one made.
+template <class Bonds>
+void Lps::sweep(Bonds& bonds, void (*first)(Bonds&, std::size_t, std::size_t),
+                void (*second)(const Bonds&, std::size_t, std::size_t)) {
+  parallel_pieces(
+      body().size(), [&](std::size_t begin, std::size_t end) { first(bonds, begin, end); }, kPiece);
   parallel_pieces(list_.points.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) list_.points[i].tension = tension_[i];
   });
-  sweep(kernels_.list.pull, list_);
+  parallel_pieces(
+      body().size(), [&](std::size_t begin, std::size_t end) { second(bonds, begin, end); }, kPiece);
+}
+
+std::optional<Breakdown> Lps::internal_force(std::span<const double> u, std::span<double> force) {
+  look_at(u, force);
+  if (body().on_lattice() != nullptr) {
+    sweep(lattice_, kernels_.lattice.respond, kernels_.lattice.pull);
+  } else {
+    sweep(list_, kernels_.list.respond, kernels_.list.pull);
+  }
   return std::nullopt;
+}
+
+void Lps::stiffness_bound(std::span<const double> u, std::span<double> bound) {
+  std::vector<double> grip(body().size()), own_grip(body().size());
+  lattice_.grip = list_.grip = grip.data();
+  lattice_.own_grip = list_.own_grip = own_grip.data();
+  look_at(u, bound);
+  if (body().on_lattice() != nullptr) {
+    sweep(lattice_, kernels_.lattice.grip, kernels_.lattice.bound);
+  } else {
+    sweep(list_, kernels_.list.grip, kernels_.list.bound);
+  }
 }
 
 double Lps::strain_energy(std::span<const double> u) {

@@ -77,7 +77,10 @@ class Lps final : public PointModel {
   void make_list(const ListedBonds& list);
   void find_moments();
   void sort_blocks(const LatticeBonds& on);
-  void look_at(std::span<const double> u, std::span<double> force);
+  void look_at(std::span<const double> u, std::span<double> out);
+  template <class Bonds>
+  void sweep(Bonds& bonds, void (*first)(Bonds&, std::size_t, std::size_t),
+             void (*second)(const Bonds&, std::size_t, std::size_t));
 
   [[nodiscard]] double dilatation(std::size_t point, std::span<const double> u) const;
   /// Force state of a point's family along a bond, over omega (N/m^6).

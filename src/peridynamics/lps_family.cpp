@@ -1,4 +1,4 @@
-// What the linear peridynamic solid does seldom, family by family in plain loops: fields, tangent, bound.
+// What the linear peridynamic solid does seldom, family by family in plain loops: fields and tangent.
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -96,55 +96,6 @@ void Lps::tangent(std::span<const double> u, std::size_t first, std::size_t last
     for (const Pull& pull : pulls) add_end(pull.bond.end);
     to.begin.push_back(to.dofs.size());
   }
-}
-
-/// The tangent is at most a block-diagonal matrix, whose blocks the rows bound. A bond's part
-/// (x_i - x_j) k (x_i - x_j) is at most 2 x_i |k| x_i + 2 x_j |k| x_j. The dilatation's part kappa V (g x)^2
-/// is, by Cauchy's inequality, at most kappa V sum|g| sum(|g| (n x)^2), with the directions n of the parts of
-/// g; it lowers the tangent where kappa is negative.
-void Lps::stiffness_bound(std::span<const double> u, std::span<double> bound) {
-  struct Family {
-    double dilatation = 0;
-    double gradients = 0;             // kappa V sum|g| (N/m)
-    Vector3d own = Vector3d::Zero();  // of the dilatation with the point itself (1/m)
-  };
-  std::vector<Family> families(body().size());
-  const double kappa = std::max(constants_.kappa, 0.0);
-  parallel_for(static_cast<std::ptrdiff_t>(body().points.size()), [&](std::ptrdiff_t number) {
-    const std::size_t i = body().points[static_cast<std::size_t>(number)];
-    Family& family = families[i];
-    double lengths = 0;
-    for_each_pull(i, u, [&](const Pull& pull) {
-      const double part = inverse_moment_[i] * pull.bond.weight * pull.bond.length;
-      family.dilatation += part * pull.extension;
-      lengths += part;
-      family.own -= part * pull.direction;
-    });
-    family.gradients = kappa * volume_[i] * (lengths + family.own.norm());
-  });
-  std::fill(bound.begin(), bound.end(), 0.0);
-  const auto size = static_cast<std::ptrdiff_t>(body().size());
-  parallel_for(size, [&](std::ptrdiff_t number) {
-    const auto i = static_cast<std::size_t>(number);
-    const Family& family = families[i];
-    Matrix3d block = Matrix3d::Zero();
-    if (family.own.norm() > 0) block += family.gradients / family.own.norm() * along(family.own);
-    for_each_pull(i, u, [&](const Pull& pull) {
-      const std::size_t j = pull.bond.end;
-      const Matrix3d n = along(pull.direction);
-      const double c = inverse_moment_[i] + inverse_moment_[j];
-      const double across =
-          std::abs(tension(i, family.dilatation, pull) + tension(j, families[j].dilatation, pull)) / pull.r;
-      const double weight = volume_[i] * pull.bond.weight;
-      block += 2 * weight * (constants_.beta * c * n + across * (Matrix3d::Identity() - n));
-      // omega V of the other end, seen from there: of this point.
-      block += families[j].gradients * inverse_moment_[j] * pull.bond.weight / volume_[j] * volume_[i] *
-               pull.bond.length * n;
-    });
-    for (int d = 0; d < body().dimension; ++d)
-      bound[static_cast<std::size_t>(d) * body().size() + i] =
-          block.row(d).head(body().dimension).cwiseAbs().sum();
-  });
 }
 
 }  // namespace riven

@@ -35,7 +35,10 @@ struct LpsLattice {
   const double* inverse_moment = nullptr;  // c (1/m^5); 0 for points without a family of their own
   double* tension = nullptr;               // q = c (kappa theta - beta), of one state
   std::array<const double*, 3> u{};
-  std::array<double*, 3> force{};  // N
+  // For the bound of the stiffness, with the gradients g of a family's dilatation to its points, G = sum|g|:
+  double* grip = nullptr;        // kappa c G where kappa is positive, else 0
+  double* own_grip = nullptr;    // kappa G |g| of the point itself
+  std::array<double*, 3> out{};  // force (N), or bound of the stiffness (N/m)
 };
 
 /// A bond's other end in a list, side by side in one line of the cache.
@@ -57,7 +60,9 @@ struct LpsList {
   const std::size_t* begin = nullptr;        // bonds of point i: [begin[i], begin[i + 1])
   const std::uint32_t* neighbour = nullptr;  // readable eight entries beyond the last bond
   const std::uint8_t* masks = nullptr;       // those of point i start at byte begin[i] / 8 + i
-  std::array<double*, 3> force{};
+  double* grip = nullptr;
+  double* own_grip = nullptr;
+  std::array<double*, 3> out{};
 };
 
 /// What the kernels do with points [begin, end), in whole blocks on a lattice; each writes only its own
@@ -68,6 +73,9 @@ struct LpsSweeps {
   void (*respond)(Bonds& on, std::size_t begin, std::size_t end);
   /// Forces, from the tensions at both ends of the bonds.
   void (*pull)(const Bonds& on, std::size_t begin, std::size_t end);
+  /// Tensions and grips, then bounds of the rows of the tangent stiffness from both.
+  void (*grip)(Bonds& on, std::size_t begin, std::size_t end);
+  void (*bound)(const Bonds& on, std::size_t begin, std::size_t end);
   /// Strain energy (J).
   double (*energy)(const Bonds& on, std::size_t begin, std::size_t end);
 };

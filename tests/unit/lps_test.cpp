@@ -371,11 +371,20 @@ TEST(Lps, BoundsTheStiffnessTightly) {
     for (const int dimension : {2, 3}) {
       const Body body = make_lattice_body(dimension == 2 ? cells_of({14, 13}) : cells_of({7, 6, 6}, 2));
       for (const bool lists : {false, true}) {
-        Lps model(lists ? listed(body) : body,
-                  {.youngs_modulus = 72e9, .poissons_ratio = nu, .density = 2440, .plane = Plane::strain});
+        const LpsSettings settings{
+            .youngs_modulus = 72e9, .poissons_ratio = nu, .density = 2440, .plane = Plane::strain};
+        Lps model(lists ? listed(body) : body, settings);
         const auto u = random_displacements(model, random, 0.02);
         std::vector<double> bound(model.dofs());
         model.stiffness_bound(u, bound);
+        for (const InstructionSet set : supported_sets()) {
+          const UseSet use(set);
+          Lps other(model.body(), settings);
+          std::vector<double> same(model.dofs());
+          other.stiffness_bound(u, same);
+          for (std::size_t i = 0; i < same.size(); ++i)
+            ASSERT_NEAR(same[i], bound[i], 1e-13 * largest(bound)) << name(set);
+        }
         const Eigen::MatrixXd k = assembled(model, u);
         // All masses are the same, so the bound of the largest frequency is that of the largest eigenvalue.
         const double exact = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k, Eigen::EigenvaluesOnly)
