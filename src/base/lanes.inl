@@ -155,6 +155,11 @@ RIVEN_INLINE Lanes inverse_root(Lanes a) {
   return y + (e * y) * (((5.0 / 16) * e + 3.0 / 8) * e + 0.5);
 }
 
+/// sqrt(a) to the last bit or two, for a above 0.
+RIVEN_INLINE Lanes root(Lanes a) {
+  return a * inverse_root(a);
+}
+
 #else
 
 struct Mask {
@@ -208,18 +213,21 @@ RIVEN_INLINE Lanes select(Mask mask, Lanes a) {
   return a;
 }
 
-/// 1 / sqrt(a). Root and division beat an estimate with refinement on registers of four.
-RIVEN_INLINE Lanes inverse_root(Lanes a) {
+RIVEN_INLINE Lanes root(Lanes a) {
   RIVEN_UNROLL
   for (Register& part : a.part) {
 #if RIVEN_REGISTER == 4
-    part = 1.0 / reinterpret_cast<Register>(_mm256_sqrt_pd(reinterpret_cast<__m256d>(part)));
+    part = reinterpret_cast<Register>(_mm256_sqrt_pd(reinterpret_cast<__m256d>(part)));
 #else
     for (std::size_t l = 0; l < kRegister; ++l) part[l] = __builtin_sqrt(part[l]);
-    part = 1.0 / part;
 #endif
   }
   return a;
+}
+
+/// 1 / sqrt(a). Root and division beat an estimate with refinement on registers of four.
+RIVEN_INLINE Lanes inverse_root(Lanes a) {
+  return 1.0 / root(a);
 }
 
 #endif

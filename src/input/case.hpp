@@ -69,13 +69,14 @@ struct SetInput {  // [set.NAME]: exactly one of where and a shape
 };
 
 struct ModelInput {               // [model]
-  std::string kind = "membrane";  // or "membrane-bond", "pmb"
+  std::string kind = "membrane";  // or "membrane-bond", "pmb", "lps"
   double stabilisation = 4;       // membrane: factor G of the stabilisation energy; 0 switches it off
   // membrane-bond
   std::string loading;                    // "equibiaxial", "planar", "uniaxial", "uniaxial-compression"
   std::string variant;                    // "published" or "zero-residual"
   std::string surface_correction = "on";  // or "off"
-  std::string plane = "stress";           // pmb in two dimensions: or "strain"
+  std::string plane = "stress";           // pmb, lps in two dimensions: or "strain"
+  std::string influence = "inverse";      // lps: or "constant"
   Location at;
 };
 

@@ -100,11 +100,12 @@ void check_material(const MaterialInput& m, const Case& c, const Check& check) {
     check.fail("law", fmt::format("found \"{}\" with model.kind = \"membrane-bond\", whose bonds are "
                                   "neo-Hookean; expected \"neo-hookean\"",
                                   m.law));
-  if (m.law == LinearElastic::name && c.model.kind != "pmb" && !m.number("poissons_ratio"))
-    check.fail("poissons_ratio", "missing; only the model \"pmb\" has one of its own");
+  if (c.model.kind == "lps" && m.law == LinearElastic::name && !m.number("poissons_ratio"))
+    check.fail("poissons_ratio", "missing; expected a number above -1 and below 0.5");
   if (m.number("poissons_ratio") == 0.5)
-    check.fail("poissons_ratio",
-               "is 1/2: an incompressible solid; expected less, or a rubber's law such as \"neo-hookean\"");
+    check.fail(
+        "poissons_ratio",
+        "found 0.5; expected a number above -1 and below 0.5, or a rubber's law such as \"neo-hookean\"");
   if (!m.volumetric.empty() && !m.bulk_modulus)
     check.fail("volumetric",
                "says how volume changes, which needs bulk_modulus; without it the law is incompressible");

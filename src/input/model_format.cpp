@@ -13,10 +13,12 @@ Format describe(ModelInput& model) {
       .doc = "How points interact.",
       .at = &model.at,
       .keys = {
-          Key{"kind", Text{&model.kind, {"membrane", "membrane-bond", "pmb"}},
+          Key{"kind", Text{&model.kind, {"membrane", "membrane-bond", "pmb", "lps"}},
               "`membrane`: rubber sheets, state-based, for any loading and law. `membrane-bond`: the "
               "published bond-based one, to compare with. `pmb`: linear springs that break, for brittle "
-              "bodies in one, two or three dimensions."}
+              "bodies in one, two or three dimensions. `lps`: linear peridynamic solid, state-based, for "
+              "linear "
+              "elasticity with any Poisson's ratio in two or three dimensions."}
               .otherwise("\"membrane\""),
           Key{"stabilisation", Quantity{&model.stabilisation, dimension::none, not_negative},
               "Factor of the stabilisation energy; 0 switches it off."}
@@ -36,10 +38,14 @@ Format describe(ModelInput& model) {
               .otherwise("\"on\"")
               .applies(kind("membrane-bond")),
           Key{"plane", Text{&model.plane, {"stress", "strain"}},
-              "What holds a body in two dimensions across: nothing (Poisson's ratio 1/3), or rigid walls "
-              "(1/4)."}
+              "What holds a body in two dimensions across: nothing (with `pmb` Poisson's ratio is 1/3), or "
+              "rigid walls (1/4)."}
               .otherwise("\"stress\"")
-              .applies(kind("pmb"))}};
+              .applies(When{"kind", &model.kind, {"pmb", "lps"}}),
+          Key{"influence", Text{&model.influence, {"inverse", "constant"}},
+              "How much a bond counts by its length: as horizon over length, or all the same."}
+              .otherwise("\"inverse\"")
+              .applies(kind("lps"))}};
 }
 
 }  // namespace riven

@@ -4,6 +4,7 @@
 
 #include "input/material_format.hpp"
 #include "peridynamics/bond_membrane.hpp"
+#include "peridynamics/lps.hpp"
 #include "peridynamics/membrane.hpp"
 #include "peridynamics/pmb.hpp"
 #include "simulation/build_parts.hpp"
@@ -56,20 +57,46 @@ std::unique_ptr<PointModel> make_pmb(const Case& in, Body body) {
   return model;
 }
 
+LpsSettings lps_settings(const Case& in) {
+  const MaterialInput& material = in.materials.front();
+  if (material.critical_stretch)
+    throw InputError(material.at,
+                     fmt::format("material.{}.critical_stretch: bonds of the model \"lps\" do not break yet; "
+                                 "expected none, or kind = \"pmb\"",
+                                 material.name));
+  return {.youngs_modulus = material.number("youngs_modulus").value(),
+          .poissons_ratio = material.number("poissons_ratio").value(),
+          .density = material.density,
+          .plane = in.model.plane == "strain" ? Plane::strain : Plane::stress,
+          .influence = in.model.influence == "constant" ? Influence::constant : Influence::inverse};
+}
+
+std::unique_ptr<PointModel> make_lps(const Case& in, Body body) {
+  if (!in.inclusions.empty())
+    throw InputError(in.inclusions.front().at,
+                     "inclusion: the model \"lps\" has no rigid inclusions; expected holes and cracks only");
+  const LpsSettings settings = lps_settings(in);
+  try {
+    return std::make_unique<Lps>(std::move(body), settings);
+  } catch (const InputError& error) {
+    throw InputError(in.model.at, std::string("model: ") + error.what());
+  }
+}
+
 /// Names of the laws of which something holds.
 template <class Holds>
 std::string laws_that(const Holds& holds) {
   std::string names;
   for_each_law([&]<class L>(const L& law) {
-    if (holds(law)) names.append(names.empty() ? "" : ", ").append(L::name);
+    if (holds(law)) names.append(names.empty() ? "\"" : ", \"").append(L::name).append("\"");
   });
   return names;
 }
 
-/// Springs take Hooke's law, membranes what is incompressible and a function of the invariants.
+/// Linear solids take Hooke's law, membranes what is incompressible and a function of the invariants.
 void check_law(const Case& in) {
   const MaterialInput& material = in.materials.front();
-  const bool springs = in.model.kind == "pmb";
+  const bool springs = in.model.kind == "pmb" || in.model.kind == "lps";
   const auto fits = [springs]<class L>(const L&) {
     return springs ? std::is_same_v<L, LinearElastic> : OfInvariants<L>;
   };
@@ -91,6 +118,7 @@ void check_law(const Case& in) {
 std::unique_ptr<PointModel> make_model(const Case& in, Body body) {
   check_law(in);
   if (in.model.kind == "pmb") return make_pmb(in, std::move(body));
+  if (in.model.kind == "lps") return make_lps(in, std::move(body));
   const Material material = make_material(in.materials.front());
   try {
     if (in.model.kind == "membrane-bond")

@@ -30,6 +30,7 @@ struct Footprint {
 Footprint footprint(const std::string& model_kind) {
   if (model_kind == "membrane-bond") return {90, 5};
   if (model_kind == "pmb") return {80, 13};
+  if (model_kind == "lps") return {100, 21};
   return {220, 6};
 }
 

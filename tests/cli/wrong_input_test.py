@@ -24,6 +24,8 @@ tolerance = "1 %"
 kind = "reference"
 """
 PMB = replaced(MOVING, 'law = "neo-hookean"', 'law = "linear-elastic"') + '\n[model]\nkind = "pmb"\n'
+LPS = replaced(replaced(MOVING, 'law = "neo-hookean"', 'law = "linear-elastic"'), 'youngs_modulus = "6 MPa"',
+               'youngs_modulus = "6 MPa"\npoissons_ratio = 0.3') + '\n[model]\nkind = "lps"\n'
 STATIC_PMB = replaced(PLAIN, 'law = "neo-hookean"', 'law = "linear-elastic"') + '\n[model]\nkind = "pmb"\n'
 
 BOND = PLAIN + '\n[model]\nkind = "membrane-bond"\nloading = "planar"\nvariant = "published"\n'
@@ -85,7 +87,13 @@ MISTAKES = [
     ("springs of rubber", MOVING + '\n[model]\nkind = "pmb"\n', 'kind = "pmb"', 'kind = "pmb"\nplane = "strain"', "[material.rubber]",
      'the model "pmb" has no law "neo-hookean"; expected "linear-elastic"'),
     ("linear rubber", PLAIN, 'law = "neo-hookean"', 'law = "linear-elastic"', "[material.rubber]",
-     'the model "membrane" has no law "linear-elastic"; expected neo-hookean'),
+     'the model "membrane" has no law "linear-elastic"; expected "neo-hookean"'),
+    ("a compressible membrane", PLAIN, 'law = "neo-hookean"', 'law = "neo-hookean"\nbulk_modulus = "1 GPa"', "[material.rubber]",
+     'the model "membrane" keeps its volume'),
+    ("a law that no membrane has", PLAIN, 'law = "neo-hookean"\nyoungs_modulus = "6 MPa"',
+     'law = "ogden"\nmoduli = ["1 MPa"]\nexponents = [2]', "[material.rubber]", 'the model "membrane" has no law "ogden"'),
+    ("terms of two lengths", PLAIN, 'law = "neo-hookean"\nyoungs_modulus = "6 MPa"',
+     'law = "ogden"\nmoduli = ["1 MPa"]\nexponents = [2, 3]', "exponents", "2 exponents and 1 moduli"),
     ("another Poisson's ratio", PMB, 'youngs_modulus = "6 MPa"', 'youngs_modulus = "6 MPa"\npoissons_ratio = 0.3', "[material.rubber]",
      'the model "pmb" has 0.3333 here'),
     ("springs that break in statics", STATIC_PMB, 'youngs_modulus = "6 MPa"', 'youngs_modulus = "6 MPa"\ncritical_stretch = 0.1',
@@ -96,6 +104,17 @@ MISTAKES = [
      'it belongs to kind = "membrane"'),
     ("an inclusion in springs", PMB + '\n[[inclusion]]\ndisc = { radius = "30 mm" }\n', '"30 mm"', '"31 mm"', "[[inclusion]]",
      "has no rigid inclusions"),
+    ("a solid without Poisson's ratio", LPS, "poissons_ratio = 0.3", "", "[material.rubber]",
+     'poissons_ratio: missing; expected a number above -1 and below 0.5'),
+    ("an incompressible linear solid", LPS, "poissons_ratio = 0.3", "poissons_ratio = 0.5", "poissons_ratio",
+     'found 0.5; expected a number above -1 and below 0.5'),
+    ("a linear solid that breaks", LPS, "poissons_ratio = 0.3", "poissons_ratio = 0.3\ncritical_stretch = 0.1",
+     "[material.rubber]", 'do not break yet'),
+    ("an inclusion in a linear solid", LPS + '\n[[inclusion]]\ndisc = { radius = "30 mm" }\n', '"30 mm"', '"31 mm"', "[[inclusion]]",
+     'the model "lps" has no rigid inclusions'),
+    ("a solid of bonds along the axes", LPS, 'horizon = "3 dx"', 'horizon = "1 dx"', "[model]", "too few directions"),
+    ("influence of springs", PMB, 'kind = "pmb"', 'kind = "pmb"\ninfluence = "constant"', "influence",
+     'it belongs to kind = "lps"'),
     ("no density in motion", MOVING, 'density = "1100 kg/m^3"', "", "[material.rubber]", "density"),
     ("empty set", PLAIN + SET.format(name="far", where="x > 1 m"), "x > 1 m", "x > 2 m", "[set.far]", "the set is empty"),
     ("overlap", HOLE + '\n[[hole]]\ndisc = { radius = "5 mm", center = ["9 mm", 0] }\n', "9 mm", "10 mm",

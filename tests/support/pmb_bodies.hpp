@@ -53,7 +53,7 @@ inline std::vector<std::size_t> bonded_points(const Body& body) {
 }
 
 /// Displacements of all points, ghosts independently: a smooth part and noise, in spacings.
-inline std::vector<double> random_displacements(const Pmb& model, Random& random, double size) {
+inline std::vector<double> random_displacements(const PointModel& model, Random& random, double size) {
   const Body& body = model.body();
   std::vector<double> u(model.dofs(), 0.0);
   for (std::size_t d = 0; d < static_cast<std::size_t>(body.dimension); ++d) {

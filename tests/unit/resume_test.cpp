@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "body/listed_body.hpp"
 #include "peridynamics/bond_membrane.hpp"
+#include "peridynamics/lps.hpp"
 #include "peridynamics/pmb.hpp"
 #include "solver/dynamic_relaxation.hpp"
 #include "solver/velocity_verlet.hpp"
@@ -50,6 +51,13 @@ std::unique_ptr<PointModel> pmb(bool as_list, Faces mirrored) {
                                PmbSettings{.youngs_modulus = 6, .density = 1, .critical_stretch = 0.02});
 }
 
+std::unique_ptr<PointModel> lps(bool as_list, Faces mirrored) {
+  const Body on_lattice =
+      make_lattice_body(sheet(14, 12, 0.05, mirrored, {{Disc{{0.15, 0.1, 0}, 0.08}}, {}, {}}));
+  return std::make_unique<Lps>(as_list ? listed(on_lattice) : on_lattice,
+                               LpsSettings{.youngs_modulus = 6, .poissons_ratio = 0.4, .density = 1});
+}
+
 struct ModelCase {
   const char* name;
   std::function<std::unique_ptr<PointModel>(Faces)> make;
@@ -64,6 +72,8 @@ const std::vector<ModelCase>& models() {
       {"BondMembraneListed", [](Faces mirrored) { return bond_membrane(true, mirrored); }},
       {"Pmb", [](Faces mirrored) { return pmb(false, mirrored); }},
       {"PmbListed", [](Faces mirrored) { return pmb(true, mirrored); }},
+      {"Lps", [](Faces mirrored) { return lps(false, mirrored); }},
+      {"LpsListed", [](Faces mirrored) { return lps(true, mirrored); }},
   };
   return all;
 }

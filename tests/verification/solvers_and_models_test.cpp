@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "peridynamics/bond_membrane.hpp"
+#include "peridynamics/lps.hpp"
 #include "peridynamics/pmb.hpp"
 #include "solver/dynamic_relaxation.hpp"
 #include "solver/velocity_verlet.hpp"
@@ -46,6 +47,11 @@ const std::vector<ModelCase>& models() {
        }},
       {"Pmb", 1.001,
        [] { return std::make_unique<Pmb>(body(), PmbSettings{.youngs_modulus = 3, .density = 1}); }},
+      {"Lps", 1.001,
+       [] {
+         return std::make_unique<Lps>(body(),
+                                      LpsSettings{.youngs_modulus = 3, .poissons_ratio = 0.4, .density = 1});
+       }},
   };
   return all;
 }

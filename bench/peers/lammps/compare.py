@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The same PMB problem with LAMMPS and with Riven: directed bonds per CPU second over whole time steps.
+"""The same problem, PMB or LPS, with LAMMPS and with Riven: directed bonds per CPU second over whole time steps.
 
 compare.py --riven build/release/bench/riven_bench    rounds of LAMMPS and Riven in turn
 compare.py                                            LAMMPS alone
@@ -20,11 +20,12 @@ import subprocess
 import sys
 import tempfile
 
-INPUT = pathlib.Path(__file__).with_name("pmb.lmp")
+INPUT = pathlib.Path(__file__).with_name("block.lmp")
 SIDE = 40
 ISAS = ["portable", "avx2", "avx512"]
 # Names of Riven's benchmarks; Google Benchmark may add a suffix such as /real_time.
-RIVEN_FILTER = "^pmb_step/listed:{listed}/threads:{threads}/isa:{isa}(/.*)?$"
+RIVEN_FILTER = {"pmb": "^pmb_step/listed:{listed}/threads:{threads}/isa:{isa}(/.*)?$",
+                "lps": "^lps_step/listed:{listed}/threads:{threads}/isa:{isa}/dimension:3(/.*)?$"}
 RIVEN_SECONDS = 3  # about as long as LAMMPS's 20 steps
 
 # CPU seconds of the time steps alone; bytes: the largest resident memory, and what LAMMPS counts while it steps.
@@ -54,9 +55,9 @@ def output_of(command):
     return text, usage.ru_maxrss * 1024
 
 
-def run_lammps(program, side, steps, as_shipped, threads=1, dump="/dev/null"):
-    command = [program, "-log", "none", "-in", str(INPUT)]
-    for name, value in (("side", side), ("steps", steps), ("as_shipped", int(as_shipped)), ("dump", dump)):
+def run_lammps(options, side, steps, as_shipped, threads=1, dump="/dev/null"):
+    command = [options.lammps, "-log", "none", "-in", str(INPUT)]
+    for name, value in (("model", options.model), ("side", side), ("steps", steps), ("as_shipped", int(as_shipped)), ("dump", dump)):
         command += ["-var", name, str(value)]
     if threads > 1:
         command = ["mpirun", "-np", str(threads)] + command
@@ -74,13 +75,13 @@ def run_lammps(program, side, steps, as_shipped, threads=1, dump="/dev/null"):
 
 
 def lammps_rate(options, as_shipped):
-    run = run_lammps(options.lammps, SIDE, options.steps, as_shipped, options.threads)
+    run = run_lammps(options, SIDE, options.steps, as_shipped, options.threads)
     return directed_bonds(SIDE) * options.steps / run.seconds
 
 
 def run_riven(options, listed):
     """The one result of Riven's benchmark, with its counters."""
-    name = RIVEN_FILTER.format(listed=int(listed), threads=options.threads, isa=ISAS.index(options.isa))
+    name = RIVEN_FILTER[options.model].format(listed=int(listed), threads=options.threads, isa=ISAS.index(options.isa))
     command = [options.riven, f"--benchmark_filter={name}", f"--benchmark_min_time={RIVEN_SECONDS}"]
     with tempfile.NamedTemporaryFile("r") as out:  # a file: on standard output other lines may stand
         output_of(command + [f"--benchmark_out={out.name}", "--benchmark_out_format=json"])
@@ -100,10 +101,10 @@ def printed(command):
         return ""
 
 
-def instructions(program):
+def instructions(program, model):
     """The widest registers in LAMMPS's force loop."""
     libraries = re.findall(r"liblammps\S* => (\S+)", printed(["ldd", program]))
-    symbol = "_ZN9LAMMPS_NS11PairPeriPMB7computeEii"
+    symbol = f"_ZN9LAMMPS_NS11PairPeri{model.upper()}7computeEii"
     code = printed(["objdump", f"--disassemble={symbol}", os.path.realpath((libraries or [program])[0])])
     return next((isa for register, isa in (("%zmm", "avx512"), ("%ymm", "avx"), ("%xmm", "sse2")) if register in code),
                 "unknown")
@@ -120,8 +121,8 @@ def compare(options):
     if options.riven:
         runs["Riven, lattice"] = lambda: run_riven(options, listed=False)["bonds/cpu_s"]
         runs["Riven, listed"] = lambda: run_riven(options, listed=True)["bonds/cpu_s"]
-    print(f"{SIDE}^3 points, {directed_bonds(SIDE)} directed bonds, threads: {options.threads}")
-    print(f"instructions: LAMMPS {instructions(options.lammps)}, Riven {options.isa if options.riven else 'not run'}")
+    print(f"{options.model}, {SIDE}^3 points, {directed_bonds(SIDE)} directed bonds, threads: {options.threads}")
+    print(f"instructions: LAMMPS {instructions(options.lammps, options.model)}, Riven {options.isa if options.riven else 'not run'}")
     print("million directed bonds per CPU second over whole time steps:")
     print("round  " + "  ".join(runs))
     rates = {name: [] for name in runs}
@@ -140,7 +141,7 @@ def compare(options):
 def compare_memory(options):
     print("bytes per directed bond:")
     for name, as_shipped in (("bonds alone", False), ("as shipped", True)):
-        tiny, run = (run_lammps(options.lammps, side, 1, as_shipped) for side in (4, SIDE))
+        tiny, run = (run_lammps(options, side, 1, as_shipped) for side in (4, SIDE))
         peak, held = ((big - small) / directed_bonds(SIDE) for small, big in zip(tiny[1:], run[1:]))
         print(f"LAMMPS, {name}: {peak:.1f} at its largest, in set-up; {held:.1f} while it steps, by its own count")
     if options.riven:
@@ -148,10 +149,29 @@ def compare_memory(options):
             print(f"Riven, {name}: {run_riven(options, listed)['bytes/bond']:.1f} (as the benchmark counts)")
 
 
-def plain_positions(side, steps, as_shipped):
-    """Velocity Verlet with a plain sum over bonds, in the order and with the material of pmb.lmp."""
+def springs(bonds, extensions):
+    """PMB's forces along the bonds (N/m^6)."""
+    micromodulus = 12 * 72e9 / (math.pi * (3e-3) ** 4)
+    return [micromodulus * e / length for (_, _, length, _), e in zip(bonds, extensions)]
+
+
+def solid(bonds, extensions):
+    """Those of the linear peridynamic solid, whose influence is 1 / length: of each bond's first point."""
+    bulk, shear = 72e9 / (3 * (1 - 2 * 0.22)), 72e9 / (2 * (1 + 0.22))
+    moment, dilatation = collections.Counter(), collections.Counter()
+    for (i, _, length, volume), e in zip(bonds, extensions):
+        moment[i] += length * volume
+        dilatation[i] += 3 * e * volume
+    forces = []
+    for (i, _, length, _), e in zip(bonds, extensions):
+        theta = dilatation[i] / moment[i]
+        forces.append((3 * bulk * theta + 15 * shear * (e - theta * length / 3) / length) / moment[i])
+    return forces
+
+
+def plain_positions(model, side, steps, as_shipped):
+    """Velocity Verlet with plain sums over bonds, in the order and with the material of block.lmp."""
     dx, volume, density, dt = 1e-3, 1e-9, 2440.0, 5e-8
-    micromodulus = 12 * 72e9 / (math.pi * (3 * dx) ** 4)
     cells = [cell[::-1] for cell in itertools.product(range(side), repeat=3)]  # x runs fastest
     start = [[(k + 0.5 - side / 2) * dx for k in cell] for cell in cells]
     index = {cell: i for i, cell in enumerate(cells)}
@@ -162,18 +182,21 @@ def plain_positions(side, steps, as_shipped):
             length = math.hypot(*offset)
             part = min(1.0, 3.0001 - length + 0.5) if as_shipped else 1.0
             if j is not None:
-                bonds.append((i, j, length * dx, micromodulus * part * volume))
+                bonds.append((i, j, length * dx, part * volume))
     wave = math.pi / (side * dx)
     x = [list(p) for p in start]
     v = [[0.01 * math.sin(wave * p[k]) for k in (0, 2, 1)] for p in start]
 
     def kick(duration):
-        for i, j, length, stiffness in bonds:
-            d = [b - a for a, b in zip(x[i], x[j])]
-            r = math.hypot(*d)
-            factor = stiffness * (r / length - 1) / r / density * duration
+        lengths = [math.dist(x[i], x[j]) for i, j, _, _ in bonds]
+        forces = {"pmb": springs, "lps": solid}[model](bonds, [r - bond[2] for bond, r in zip(bonds, lengths)])
+        for (i, j, _, part), r, force in zip(bonds, lengths, forces):
+            factor = force * part / r / density * duration
             for k in range(3):
-                v[i][k] += factor * d[k]
+                pull = factor * (x[j][k] - x[i][k])
+                v[i][k] += pull
+                if model == "lps":  # pulls at both ends; of springs, each end has its own bond
+                    v[j][k] -= pull
 
     for _ in range(steps):
         kick(dt / 2)
@@ -189,9 +212,9 @@ def check(options):
     side, steps, tolerance = 6, 20, 1e-8
     worst = 0.0
     for as_shipped in (False, True):
-        start, expected = plain_positions(side, steps, as_shipped)
+        start, expected = plain_positions(options.model, side, steps, as_shipped)
         with tempfile.NamedTemporaryFile("r") as dump:
-            run_lammps(options.lammps, side, steps, as_shipped, dump=dump.name)
+            run_lammps(options, side, steps, as_shipped, dump=dump.name)
             rows = dump.read().split("ITEM: ATOMS")[1].splitlines()[1:]
         found = [[float(word) for word in row.split()[1:]] for row in rows]
         largest = max(math.dist(a, b) for a, b in zip(expected, start))
@@ -204,6 +227,7 @@ def check(options):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--model", choices=["pmb", "lps"], default="pmb")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--steps", type=int, default=20, help="time steps of LAMMPS per round")
     parser.add_argument("--threads", type=int, default=1, help="MPI processes for LAMMPS; one is pinned to a core")
