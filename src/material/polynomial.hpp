@@ -15,7 +15,7 @@ struct Polynomial {
   static void each_parameter(Self& law, const Each& each) {
     const ParameterKind coefficient{.doc = "Factor of (I1 - 3)^i (I2 - 3)^j, for the key cij.",
                                     .fallback = 0};
-    each("c10", law.c10, coefficient);
+    each("c10", law.c10, {.doc = coefficient.doc});
     each("c01", law.c01, coefficient);
     each("c20", law.c20, coefficient);
     each("c11", law.c11, coefficient);
