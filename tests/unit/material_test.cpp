@@ -52,8 +52,8 @@ INSTANTIATE_TEST_SUITE_P(Materials, InvariantLawOf, ::testing::ValuesIn(invarian
 TEST_P(InvariantLawOf, DerivativesAreThoseOfItsEnergy) {
   const LawCase& law = GetParam();
   Random random(kSeed);
-  // Five points are exact for polynomials up to degree 4; the rest is rounding of 1e-16 W / h. Measured:
-  // 2e-11 mu (Gent), 3e-12 otherwise.
+  // Five points are exact for polynomials up to degree 4; the rest is rounding of 1e-16 W / h, and for
+  // laws that are none h^4 W^(5) / 30.
   const double h = 1e-2, tolerance = 1e-9 * law.shear_modulus;
   for (int n = 0; n < kSamples; ++n) {
     const double i1 = random.between(3, 12), i2 = random.between(3, 12);
@@ -138,7 +138,7 @@ TEST_P(EveryLaw, StressAndTangentAreDerivativesInPlaneStress) {
         f, [&](const Matrix2d& g) { return material.plane_stress(g); },
         [&](const Matrix2d& g) { return energy_of(law(), in_space(g, material.thickness_stretch(g))); }, mu(),
         1e-7);
-    // Rounding of stresses of the size of the bulk modulus; measured 3e-15 of it.
+    // Rounding of stresses of the size of the bulk modulus.
     const Response r = material.solid(in_space(f, material.thickness_stretch(f)));
     EXPECT_LT(std::abs(r.stress(2, 2)), 1e-12 * r.tangent.norm()) << f;
   }
@@ -179,7 +179,7 @@ TEST_P(EveryLaw, DoesNotSeeRotations) {
     const Matrix3d f = random_gradient(random, 0.7, 2), q = random_rotation(random);
     const Response plain = material.solid(f), observed = material.solid(q * f),
                    turned = material.solid(f * q);
-    const double tolerance = 1e-12 * (mu() + plain.tangent.norm());  // rounding; measured 1e-14
+    const double tolerance = 1e-12 * (mu() + plain.tangent.norm());  // rounding
     EXPECT_NEAR(observed.energy, plain.energy, tolerance) << "seed " << kSeed + 6;
     EXPECT_NEAR(turned.energy, plain.energy, tolerance);
     EXPECT_LT((observed.stress - q * plain.stress).norm(), tolerance);
@@ -214,7 +214,7 @@ TEST_P(EveryLaw, RestsWithoutStressAndHasItsModuli) {
           hooke(3 * i + J, 3 * k + L) =
               lambda * (i == J && k == L ? 1 : 0) +
               moduli.shear * ((i == k && J == L ? 1 : 0) + (i == L && J == k ? 1 : 0));
-  EXPECT_LT((rest.tangent - hooke).norm(), 1e-12 * hooke.norm());  // 1e-15 measured
+  EXPECT_LT((rest.tangent - hooke).norm(), 1e-12 * hooke.norm());  // rounding
   const double e = moduli.youngs_modulus(), nu = moduli.poissons_ratio();
   EXPECT_NEAR(moduli.shear, e / (2 * (1 + nu)), 1e-14 * mu());
   EXPECT_NEAR(moduli.bulk, e / (3 * (1 - 2 * nu)), 1e-12 * moduli.bulk);
@@ -259,7 +259,7 @@ TEST_P(EveryLaw, CarriesWavesAtTheSpeedsOfItsAcousticTensor) {
     const Eigen::Vector3d speeds = wave_speeds(material, f, direction);
     double sum = 0;
     for (const double speed : speeds) sum += 1100 * speed * std::abs(speed);
-    // h^2 W'''' / 12; measured 4e-6.
+    // h^2 W'''' / 12
     EXPECT_NEAR(sum, trace, 2e-5 * (trace + material.solid(f).tangent.norm()));
   }
 }
