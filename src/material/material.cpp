@@ -219,7 +219,7 @@ double plane_stress_response(const L& law, const std::optional<Volumetric>& volu
                              const SmallStrain& moduli, const Matrix2& f, Matrix2& stress,
                              Tangent2* tangent) {
   if constexpr (!OfGradient<L>) {
-    if (!volumetric) return f.determinant() > 0 ? incompressible_sheet(law, f, stress, tangent) : kNotANumber;
+    if (!volumetric) return incompressible_sheet(law, f, stress, tangent);
   }
   return free_sheet(law, volumetric, moduli, f, stress, tangent);
 }
