@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "input/material_format.hpp"
 #include "input/model_format.hpp"
@@ -119,9 +118,8 @@ void check_material(const MaterialInput& m, const Case& c, const Check& check) {
 Format describe(MaterialInput& m, const Case& c) {
   std::vector<Key> keys = {
       Key{"law", Text{&m.law, law_names()},
-          "The constitutive law. The models `pmb` and `lps` take `linear-elastic`, membranes an "
-          "incompressible "
-          "rubber, `correspondence` any."}
+          "The constitutive law. The models `pmb` and `lps` take `linear-elastic`, membranes a rubber W(I1, "
+          "I2)."}
           .required(),
       Key{"density", Quantity{&m.density, dimension::density, positive}, "Needed where inertia counts."}
           .required_if(When{"solver.method", &c.solver.method, {"verlet"}})};

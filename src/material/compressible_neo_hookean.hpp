@@ -9,18 +9,12 @@
 namespace riven {
 
 /// W = mu / 2 (I1 - 3 - 2 ln J) + lambda / 2 (ln J)^2, with I1 = F:F.
-struct CompressibleNeoHookean {
+struct CompressibleNeoHookean : ElasticModuli {
   static constexpr const char* name = "compressible-neo-hookean";
   static constexpr bool objective = true;
-  ElasticModuli moduli;
-
-  template <class Self, class Each>
-  static void each_parameter(Self& law, const Each& each) {
-    ElasticModuli::each_parameter(law.moduli, each);
-  }
 
   double operator()(const Eigen::Matrix3d& f, Eigen::Matrix3d& stress, Response::Tangent* tangent) const {
-    const double mu = moduli.shear(), lambda = moduli.lame(), log_j = std::log(f.determinant());
+    const double mu = shear(), lambda = lame(), log_j = std::log(f.determinant());
     const Eigen::Matrix3d g = f.inverse().transpose();
     stress = mu * (f - g) + lambda * log_j * g;
     if (tangent != nullptr) {

@@ -7,18 +7,12 @@ namespace riven {
 
 /// Hooke's law for small strain: P = lambda tr(e) 1 + 2 mu e with e = sym(F) - 1. Not objective: a rotation
 /// by the angle t gives stresses of the order of t^2 E.
-struct LinearElastic {
+struct LinearElastic : ElasticModuli {
   static constexpr const char* name = "linear-elastic";
   static constexpr bool objective = false;
-  ElasticModuli moduli;
-
-  template <class Self, class Each>
-  static void each_parameter(Self& law, const Each& each) {
-    ElasticModuli::each_parameter(law.moduli, each);
-  }
 
   double operator()(const Eigen::Matrix3d& f, Eigen::Matrix3d& stress, Response::Tangent* tangent) const {
-    const double mu = moduli.shear(), lambda = moduli.lame();
+    const double mu = shear(), lambda = lame();
     const Eigen::Matrix3d one = Eigen::Matrix3d::Identity(), e = 0.5 * (f + f.transpose()) - one;
     stress = lambda * e.trace() * one + 2 * mu * e;
     if (tangent != nullptr) {

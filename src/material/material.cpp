@@ -253,6 +253,20 @@ std::size_t for_each_gradient(std::size_t n, const double* const* f, double* con
   return unanswered;
 }
 
+/// Roots of the eigenvalues of an acoustic tensor over the density, with their signs.
+template <int D>
+Eigen::Matrix<double, D, 1> speeds(const Eigen::Matrix<double, D * D, D * D>& a, double density,
+                                   const Eigen::Matrix<double, D, 1>& n) {
+  Eigen::Matrix<double, D, D> acoustic = Eigen::Matrix<double, D, D>::Zero();
+  for (int i = 0; i < D; ++i)
+    for (int k = 0; k < D; ++k)
+      for (int J = 0; J < D; ++J)
+        for (int L = 0; L < D; ++L) acoustic(i, k) += a(D * i + J, D * k + L) * n(J) * n(L);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D, D>> solver(acoustic, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues().unaryExpr(
+      [&](double value) { return std::copysign(std::sqrt(std::abs(value) / density), value); });
+}
+
 }  // namespace
 
 double SmallStrain::youngs_modulus() const {
@@ -283,7 +297,7 @@ SmallStrain Material::small_strain() const {
         } else if constexpr (OfStretches<L>) {
           return {0.5 * l(1.0).d, bulk};
         } else {
-          return {l.moduli.shear(), l.moduli.lame() + 2.0 / 3 * l.moduli.shear()};
+          return {l.shear(), l.lame() + 2.0 / 3 * l.shear()};
         }
       },
       law);
@@ -339,24 +353,6 @@ std::size_t Material::stress(Kinematics kinematics, std::size_t n, const double*
       },
       law);
 }
-
-namespace {
-
-/// Roots of the eigenvalues of an acoustic tensor over the density, with their signs.
-template <int D>
-Eigen::Matrix<double, D, 1> speeds(const Eigen::Matrix<double, D * D, D * D>& a, double density,
-                                   const Eigen::Matrix<double, D, 1>& n) {
-  Eigen::Matrix<double, D, D> acoustic = Eigen::Matrix<double, D, D>::Zero();
-  for (int i = 0; i < D; ++i)
-    for (int k = 0; k < D; ++k)
-      for (int J = 0; J < D; ++J)
-        for (int L = 0; L < D; ++L) acoustic(i, k) += a(D * i + J, D * k + L) * n(J) * n(L);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D, D>> solver(acoustic, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues().unaryExpr(
-      [&](double value) { return std::copysign(std::sqrt(std::abs(value) / density), value); });
-}
-
-}  // namespace
 
 Eigen::Vector3d wave_speeds(const Material& material, const Matrix3& f, const Eigen::Vector3d& n) {
   return speeds<3>(material.solid(f).tangent, material.density, n);

@@ -7,8 +7,8 @@
 namespace riven {
 
 /// What a parameter of a law is, for the case format and its documentation. A law calls each(name, member,
-/// ParameterKind) for all of its parameters, in `each_parameter`; the member is a double, an optional one, or
-/// a list of doubles.
+/// ParameterKind) for all of its parameters, in `each_parameter`; the member is a double or a list of
+/// doubles.
 struct ParameterKind {
   enum class Unit { none, pressure };
   enum class Range { any, positive, poissons_ratio };

@@ -7,18 +7,12 @@ namespace riven {
 
 /// Hooke's law between second Piola-Kirchhoff stress and Green's strain E = (F^T F - 1) / 2: small strain
 /// under any rotation. It softens under compression and fails near a stretch of 0.58.
-struct StVenantKirchhoff {
+struct StVenantKirchhoff : ElasticModuli {
   static constexpr const char* name = "st-venant-kirchhoff";
   static constexpr bool objective = true;
-  ElasticModuli moduli;
-
-  template <class Self, class Each>
-  static void each_parameter(Self& law, const Each& each) {
-    ElasticModuli::each_parameter(law.moduli, each);
-  }
 
   double operator()(const Eigen::Matrix3d& f, Eigen::Matrix3d& stress, Response::Tangent* tangent) const {
-    const double mu = moduli.shear(), lambda = moduli.lame();
+    const double mu = shear(), lambda = lame();
     const Eigen::Matrix3d one = Eigen::Matrix3d::Identity(), e = 0.5 * (f.transpose() * f - one);
     const Eigen::Matrix3d s = lambda * e.trace() * one + 2 * mu * e;
     stress = f * s;

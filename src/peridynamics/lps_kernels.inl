@@ -2,53 +2,12 @@
 // (for_each_instruction_set.inl). On a lattice the lanes are eight points of a row at the same bond of the
 // stencil, in a list eight bonds of a point.
 
-/// Eight bonds: deformed bond vectors Y and displacement differences eta (m).
-template <int D>
-struct Bonds {
-  Lanes y[D];
-  Lanes eta[D];
-};
+#include "peridynamics/bond_lanes.inl"
 
-template <int D>
-RIVEN_INLINE Lanes dot(const Lanes (&a)[D], const Lanes (&b)[D]) {
-  Lanes sum = a[0] * b[0];
-  RIVEN_UNROLL
-  for (int d = 1; d < D; ++d) sum = sum + a[d] * b[d];
-  return sum;
-}
-
-RIVEN_INLINE Lanes load_at(const double* field, std::size_t point, std::ptrdiff_t shift) {
-  return load(field + static_cast<std::ptrdiff_t>(point) + shift);
-}
-
-/// Bond k of eight points of a lattice.
-template <int D>
-RIVEN_INLINE Bonds<D> bonds_at(const LpsLattice& on, const LpsBond& bond, std::size_t point,
-                               const Lanes (&u)[D]) {
-  Bonds<D> bonds;
-  RIVEN_UNROLL
-  for (int d = 0; d < D; ++d) {
-    const auto axis = static_cast<std::size_t>(d);
-    bonds.eta[d] = load_at(on.u[axis], point, bond.shift) - u[d];
-    bonds.y[d] = bond.xi[axis] + bonds.eta[d];
-  }
-  return bonds;
-}
-
-template <int D>
-RIVEN_INLINE void load_displacements(const LpsLattice& on, std::size_t point, Lanes (&u)[D]) {
-  RIVEN_UNROLL
-  for (int d = 0; d < D; ++d) u[d] = load(on.u[static_cast<std::size_t>(d)] + point);
-}
-
-/// Extension e = |Y| - |xi| of eight bonds, without cancellation for small strains: r^2 - L^2 =
-/// eta (xi + Y).
+/// Extension e = |Y| - |xi| of eight bonds.
 template <int D>
 RIVEN_INLINE Lanes extension(const Bonds<D>& at, Lanes length) {
-  Lanes sums[D];
-  RIVEN_UNROLL
-  for (int d = 0; d < D; ++d) sums[d] = (at.y[d] - at.eta[d]) + at.y[d];
-  return dot(at.eta, sums) / (root(dot(at.y, at.y)) + length);
+  return squared_growth(at) / (root(dot(at.y, at.y)) + length);
 }
 
 /// q = c (kappa theta - beta) with the dilatation theta = c S, from the sum S of omega L e V over the family.

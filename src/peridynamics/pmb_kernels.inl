@@ -2,43 +2,10 @@
 // On a lattice the lanes are eight points of a row at the same bond of the stencil, in a list eight bonds of
 // a point.
 
-/// Eight bonds: deformed bond vectors Y and displacement differences eta (m).
-template <int D>
-struct Bonds {
-  Lanes y[D];
-  Lanes eta[D];
-};
-
-template <int D>
-RIVEN_INLINE Lanes dot(const Lanes (&a)[D], const Lanes (&b)[D]) {
-  Lanes sum = a[0] * b[0];
-  RIVEN_UNROLL
-  for (int d = 1; d < D; ++d) sum = sum + a[d] * b[d];
-  return sum;
-}
-
-/// Bond k of eight points of a lattice.
-template <int D>
-RIVEN_INLINE Bonds<D> bonds_at(const PmbLattice& on, const PmbBond& bond, std::size_t point,
-                               const Lanes (&u)[D]) {
-  Bonds<D> bonds;
-  RIVEN_UNROLL
-  for (int d = 0; d < D; ++d) {
-    bonds.eta[d] =
-        load(on.u[static_cast<std::size_t>(d)] + static_cast<std::ptrdiff_t>(point) + bond.shift) - u[d];
-    bonds.y[d] = bond.xi[static_cast<std::size_t>(d)] + bonds.eta[d];
-  }
-  return bonds;
-}
-
-template <int D>
-RIVEN_INLINE void load_displacements(const PmbLattice& on, std::size_t point, Lanes (&u)[D]) {
-  RIVEN_UNROLL
-  for (int d = 0; d < D; ++d) u[d] = load(on.u[static_cast<std::size_t>(d)] + point);
-}
+#include "peridynamics/bond_lanes.inl"
 
 RIVEN_INLINE Lanes weights_at(const PmbLattice& on, const PmbBond& bond, std::size_t point) {
-  return load(on.weight + static_cast<std::ptrdiff_t>(point) + bond.shift);
+  return load_at(on.weight, point, bond.shift);
 }
 
 /// Forces on eight points: f = c (1/L - 1/r) Y V per bond, with r = |Y|. The same as c s Y / r with the
@@ -129,14 +96,11 @@ double lattice_force(PmbLattice& on, std::size_t begin, std::size_t end, bool br
                                : pull_blocks<D, false>(on, begin, end, breaks);
 }
 
-/// s^2 L of eight bonds, without cancellation for small strains: r^2 - L^2 = eta (xi + Y).
+/// s^2 L of eight bonds.
 template <int D>
 RIVEN_INLINE Lanes squared_stretch_times_length(const Bonds<D>& at, Lanes inverse_length) {
-  Lanes sums[D];
-  RIVEN_UNROLL
-  for (int d = 0; d < D; ++d) sums[d] = (at.y[d] - at.eta[d]) + at.y[d];
   const Lanes r2 = dot(at.y, at.y), r = r2 * inverse_root(r2);
-  const Lanes stretch = dot(at.eta, sums) * inverse_length * inverse_length / (r * inverse_length + 1.0);
+  const Lanes stretch = squared_growth(at) * inverse_length * inverse_length / (r * inverse_length + 1.0);
   return stretch * stretch / inverse_length;
 }
 
