@@ -116,8 +116,8 @@ struct InitialInput {                                  // [[initial]]
 };
 
 struct SolverInput {   // [solver]
-  std::string method;  // "dynamic-relaxation" or "verlet"
-  // dynamic relaxation
+  std::string method;  // "dynamic-relaxation", "newton" or "verlet"
+  // statics
   std::vector<double> stretch;  // output states, strictly monotone away from 1
   double increment = 0.1;       // largest step of the stretch
   double tolerance = 1e-5;      // free force / reaction
@@ -137,7 +137,7 @@ struct CheckpointInterval {
 };
 
 struct OutputInput {                    // [output]
-  std::optional<double> every;          // s (Verlet); relaxation: at each stretch
+  std::optional<double> every;          // s (Verlet); statics: at each stretch
   std::optional<double> history_every;  // s (Verlet)
   std::vector<std::string> fields = {"displacement", "damage", "strain_energy_density", "nominal_stress"};
   CheckpointInterval checkpoint_every;

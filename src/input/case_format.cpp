@@ -31,6 +31,7 @@ using kind::Text;
 using kind::Texts;
 
 const std::string relaxation = "dynamic-relaxation";
+const std::string newton = "newton";
 const std::string verlet = "verlet";
 
 When method(const Case& c, const std::string& value) {
@@ -152,7 +153,7 @@ Format describe(LoadInput& load) {
                        .required(),
                    Key{"displacement", Components{&load.displacement},
                        "One entry per direction: \"free\" or a length, a formula of x, y, z and stretch "
-                       "(dynamic relaxation) or t (Verlet)."}
+                       "(statics) or t (Verlet)."}
                        .required()},
           .finish = [&load](const Check& check) {
             check_parts(load.on, check);
@@ -207,38 +208,39 @@ void check_count(const char* key, double count, const char* what, double most, c
 }
 
 Format describe(SolverInput& s) {
-  const When relaxed{"method", &s.method, {relaxation}};
+  const When in_statics{"method", &s.method, {relaxation, newton}};
   const When in_time{"method", &s.method, {verlet}};
   const auto time = [](auto& to) { return Quantity{&to, dimension::time, positive}; };
   return {
       .doc = "How the body is brought to its states.",
       .at = &s.at,
-      .keys = {Key{"method", Text{&s.method, {relaxation, verlet}},
-                   "Static states by relaxation, or motion by explicit steps."}
-                   .required(),
-               Key{"stretch", Quantities{&s.stretch, dimension::none, positive},
-                   "Output states, moving away from 1."}
-                   .applies(relaxed)
-                   .required(),
-               Key{"increment", Quantity{&s.increment, dimension::none, positive},
-                   "Largest step of the stretch."}
-                   .applies(relaxed)
-                   .otherwise("0.1"),
-               Key{"tolerance", Quantity{&s.tolerance, dimension::none, fraction},
-                   "L2 norm of the free forces over that of the constraint forces, at which a state has "
-                   "converged."}
-                   .applies(relaxed)
-                   .otherwise("1e-5"),
-               Key{"max_iterations", Integer{&s.max_iterations, 1},
-                   "Per load step; beyond it the step is cut."}
-                   .applies(relaxed)
-                   .otherwise("20000"),
-               Key{"until", time(s.until), "End of the run."}.applies(in_time).required(),
-               Key{"step", time(s.step), "Time step; from the stable step unless given."}.applies(in_time),
-               Key{"safety", Quantity{&s.safety, dimension::none, fraction},
-                   "Part of the stable step that is used."}
-                   .applies(in_time)
-                   .otherwise("0.8")},
+      .keys =
+          {Key{"method", Text{&s.method, {relaxation, newton, verlet}},
+               "Static states by relaxation or by Newton's method, or motion by explicit steps."}
+               .required(),
+           Key{"stretch", Quantities{&s.stretch, dimension::none, positive},
+               "Output states, moving away from 1."}
+               .applies(in_statics)
+               .required(),
+           Key{"increment", Quantity{&s.increment, dimension::none, positive}, "Largest step of the stretch."}
+               .applies(in_statics)
+               .otherwise("0.1"),
+           Key{"tolerance", Quantity{&s.tolerance, dimension::none, fraction},
+               "L2 norm of the free forces over that of the constraint forces, at which a state has "
+               "converged."}
+               .applies(in_statics)
+               .otherwise("1e-5"),
+           Key{"max_iterations", Integer{&s.max_iterations, 1},
+               "Of relaxation, per load step; beyond it the step is cut. Newton's method, which relaxation "
+               "stands in for where it fails, has 30."}
+               .applies(in_statics)
+               .otherwise("20000"),
+           Key{"until", time(s.until), "End of the run."}.applies(in_time).required(),
+           Key{"step", time(s.step), "Time step; from the stable step unless given."}.applies(in_time),
+           Key{"safety", Quantity{&s.safety, dimension::none, fraction},
+               "Part of the stable step that is used."}
+               .applies(in_time)
+               .otherwise("0.8")},
       .finish = [&s](const Check& check) {
         check_stretch(s.stretch, check);
         if (s.stretch.empty()) {
@@ -255,33 +257,33 @@ Format describe(SolverInput& s) {
 
 Format describe(OutputInput& output, const Case& c) {
   const auto time = [](std::optional<double>& to) { return Quantity{&to, dimension::time, positive}; };
-  return {
-      .doc = "What is written. Dynamic relaxation writes at each stretch.",
-      .at = &output.at,
-      .keys =
-          {Key{"every", time(output.every), "Time between output states; start and end only unless given."}
-               .applies(method(c, verlet)),
-           Key{"history_every", time(output.history_every),
-               "Time between rows of the history; `every` unless given."}
-               .applies(method(c, verlet)),
-           Key{"fields",
-               Texts{&output.fields,
-                     {"displacement", "damage", "strain_energy_density", "nominal_stress", "weight_minimum",
-                      "surface_correction"}},
-               "Fields of the output states; weight_minimum: membrane, surface_correction: "
-               "membrane-bond."}
-               .otherwise(R"(["displacement", "damage", "strain_energy_density", "nominal_stress"])"),
-           Key{"checkpoint_every", Interval{&output.checkpoint_every},
-               "Wall time, or time steps (Verlet) or iterations (dynamic relaxation), between checkpoints, "
-               "from which `riven run --resume` goes on."}
-               .otherwise("\"5 min\"")},
-      .finish = [&output, &c](const Check& check) {
-        const double until = c.solver.until;
-        if (output.every) check_count("every", until / *output.every, "output states", kMostStates, check);
-        if (output.history_every)
-          check_count("history_every", until / *output.history_every, "rows of the history", kMostStates,
-                      check);
-      }};
+  return {.doc = "What is written. Static solvers write at each stretch.",
+          .at = &output.at,
+          .keys = {Key{"every", time(output.every),
+                       "Time between output states; start and end only unless given."}
+                       .applies(method(c, verlet)),
+                   Key{"history_every", time(output.history_every),
+                       "Time between rows of the history; `every` unless given."}
+                       .applies(method(c, verlet)),
+                   Key{"fields",
+                       Texts{&output.fields,
+                             {"displacement", "damage", "strain_energy_density", "nominal_stress",
+                              "weight_minimum", "surface_correction"}},
+                       "Fields of the output states; weight_minimum: membrane, surface_correction: "
+                       "membrane-bond."}
+                       .otherwise(R"(["displacement", "damage", "strain_energy_density", "nominal_stress"])"),
+                   Key{"checkpoint_every", Interval{&output.checkpoint_every},
+                       "Wall time, or time steps (Verlet) or iterations (statics), between checkpoints, "
+                       "from which `riven run --resume` goes on."}
+                       .otherwise("\"5 min\"")},
+          .finish = [&output, &c](const Check& check) {
+            const double until = c.solver.until;
+            if (output.every)
+              check_count("every", until / *output.every, "output states", kMostStates, check);
+            if (output.history_every)
+              check_count("history_every", until / *output.history_every, "rows of the history", kMostStates,
+                          check);
+          }};
 }
 
 Format describe(ProbeInput& p, const Case& c) {

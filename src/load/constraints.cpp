@@ -69,6 +69,15 @@ void Constraints::fold(std::span<double> bound) const {
   for (const Constraint& constraint : prescribed_) bound[constraint.slave] = 0;
 }
 
+std::vector<Constraints::Image> Constraints::images() const {
+  std::vector<Image> images(free_.size());
+  for (std::size_t i = 0; i < images.size(); ++i)
+    if (free_[i]) images[i].entry = i;
+  for (const Constraint& constraint : mirrored_)
+    images[constraint.slave] = {images[constraint.master].entry, constraint.sign};
+  return images;
+}
+
 AffineIncrement Constraints::affine_increment(double from, double to) const {
   AffineIncrement result;
   for (int axis = 0; axis < 3; ++axis) {

@@ -64,6 +64,13 @@ class Constraints {
   void fold(std::span<double> bound) const;
 
   [[nodiscard]] bool is_free(std::size_t dof) const { return free_[dof]; }
+  /// What an entry of the state moves with: sign times a free entry, or nothing (kNone).
+  struct Image {
+    std::size_t entry = Constraint::kNone;
+    double sign = 1;
+  };
+  /// Of all entries.
+  [[nodiscard]] std::vector<Image> images() const;
   /// External force (N) along x, y, z that a load exerts on the body in the state of the last `reduce`;
   /// positive pulls towards positive coordinates.
   [[nodiscard]] const Point& reaction(std::size_t load) const { return reaction_[load]; }

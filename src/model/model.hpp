@@ -70,11 +70,11 @@ class Model {
   /// Upper bound of the sum of |tangent stiffness| over a row (N/m), for stable steps and fictitious masses.
   virtual void stiffness_bound(std::span<const double> u, std::span<double> bound) = 0;
 
-  /// Number of blocks that the tangent stiffness d(-force)/du is made of, usually one per point; 0: the model
+  /// Number of parts in which the tangent stiffness d(-force)/du comes, usually one per point; 0: the model
   /// has none. Only of models that are `conservative()`.
-  [[nodiscard]] virtual std::size_t tangent_blocks() const { return 0; }
-  /// Appends blocks [first, last) in the state u, which must be that of the last force evaluation. Threads
-  /// call it at once, each with blocks and an output of its own.
+  [[nodiscard]] virtual std::size_t tangent_parts() const { return 0; }
+  /// Appends the blocks of parts [first, last) in the state u, which must be that of the last force
+  /// evaluation. Threads call it at once, each with parts and an output of its own.
   virtual void tangent(std::span<const double> /*u*/, std::size_t /*first*/, std::size_t /*last*/,
                        TangentBlocks& /*to*/) const {}
 

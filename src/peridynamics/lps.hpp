@@ -39,7 +39,7 @@ class Lps final : public PointModel {
   [[nodiscard]] bool conservative() const override { return true; }
   void stiffness_bound(std::span<const double> u, std::span<double> bound) override;
   /// A block is the family of a body point.
-  [[nodiscard]] std::size_t tangent_blocks() const override { return body().points.size(); }
+  [[nodiscard]] std::size_t tangent_parts() const override { return body().points.size(); }
   void tangent(std::span<const double> u, std::size_t first, std::size_t last,
                TangentBlocks& to) const override;
   [[nodiscard]] std::optional<Breakdown> inspect(std::span<const double> u) override;

@@ -56,45 +56,25 @@ void Lps::tangent(std::span<const double> u, std::size_t first, std::size_t last
   const int dimension = body().dimension;
   for (std::size_t n = first; n < last; ++n) {
     const std::size_t i = body().points[n];
-    std::vector<Pull> pulls;
-    double theta = 0;
-    const double c = inverse_moment_[i], volume = volume_[i];
+    const double c = inverse_moment_[i], volume = volume_[i], theta = dilatation(i, u);
+    const auto size = static_cast<Eigen::Index>(body().family_size(i)) * dimension;
+    Eigen::VectorXd gradient(size);  // of the dilatation
+    Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(size, size);
+    std::vector<End> ends;
+    Eigen::Index at = 0;
     for_each_pull(i, u, [&](const Pull& pull) {
-      pulls.push_back(pull);
-      theta += c * pull.bond.weight * pull.bond.length * pull.extension;
-    });
-    const auto ends = static_cast<Eigen::Index>(pulls.size() + 1), size = dimension * ends;
-    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size);
-    const std::size_t values = to.values.size();
-    to.values.resize(values + static_cast<std::size_t>(size * size), 0.0);
-    Eigen::Map<Eigen::MatrixXd> k(to.values.data() + values, size, size);
-    // Entries of end e: [dimension e, dimension (e + 1)), the point itself first.
-    for (Eigen::Index e = 1; e < ends; ++e) {
-      const Pull& pull = pulls[static_cast<std::size_t>(e - 1)];
-      const Eigen::VectorXd g = (c * pull.bond.weight * pull.bond.length * pull.direction).head(dimension);
-      gradient.segment(dimension * e, dimension) = g;
-      gradient.head(dimension) -= g;
-    }
-    k.noalias() = (constants_.kappa * volume) * gradient * gradient.transpose();
-    for (Eigen::Index e = 1; e < ends; ++e) {
-      const Pull& pull = pulls[static_cast<std::size_t>(e - 1)];
       const double across = tension(i, theta, pull) / pull.r;
       const Matrix3d own =
           volume * pull.bond.weight *
           (across * Matrix3d::Identity() + (constants_.beta * c - across) * along(pull.direction));
-      const auto block = own.topLeftCorner(dimension, dimension);
-      k.block(0, 0, dimension, dimension) += block;
-      k.block(dimension * e, dimension * e, dimension, dimension) += block;
-      k.block(0, dimension * e, dimension, dimension) -= block;
-      k.block(dimension * e, 0, dimension, dimension) -= block;
-    }
-    const auto add_end = [&](std::size_t point) {
-      for (int d = 0; d < dimension; ++d)
-        to.dofs.push_back(static_cast<std::size_t>(d) * body().size() + point);
-    };
-    add_end(i);
-    for (const Pull& pull : pulls) add_end(pull.bond.end);
-    to.begin.push_back(to.dofs.size());
+      hessian.block(at, at, dimension, dimension) = own.topLeftCorner(dimension, dimension);
+      gradient.segment(at, dimension) =
+          (c * pull.bond.weight * pull.bond.length * pull.direction).head(dimension);
+      ends.push_back(static_cast<End>(pull.bond.end));
+      at += dimension;
+    });
+    hessian.noalias() += (constants_.kappa * volume) * gradient * gradient.transpose();
+    add_family_block(i, ends, gradient, hessian, to);
   }
 }
 

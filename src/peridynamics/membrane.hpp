@@ -34,6 +34,10 @@ class Membrane final : public PointModel {
   [[nodiscard]] double strain_energy(std::span<const double> u) override;
   [[nodiscard]] bool conservative() const override { return true; }
   void stiffness_bound(std::span<const double> u, std::span<double> bound) override;
+  /// A part is the family of a body point.
+  [[nodiscard]] std::size_t tangent_parts() const override { return body().points.size(); }
+  void tangent(std::span<const double> u, std::size_t first, std::size_t last,
+               TangentBlocks& to) const override;
   [[nodiscard]] std::optional<Breakdown> inspect(std::span<const double> u) override;
   [[nodiscard]] std::vector<ModelField> fields(std::span<const double> u) override;
   [[nodiscard]] std::string remedies() const override {
@@ -110,6 +114,10 @@ class Membrane final : public PointModel {
   [[nodiscard]] const ListedFamily* listed_family(std::size_t point) const;
   [[nodiscard]] bool by_gradient(std::size_t point) const;
   [[nodiscard]] std::array<double, 3> family_curvature(std::size_t point) const;
+  /// Second derivatives of a point's energy (J) by the sums a, b and M = <Y xi^T / |xi|^2>, row by row.
+  using SumHessian = Eigen::Matrix<double, 6, 6>;
+  [[nodiscard]] SumHessian sum_hessian(std::size_t point) const;
+  [[nodiscard]] SumHessian sum_hessian(const ListedFamily& by_gradient) const;
 
   Material material_;
   InvariantLaw law_;  // the material's

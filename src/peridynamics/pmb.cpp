@@ -251,6 +251,22 @@ void Pmb::plain_force(std::span<const double> u, std::span<double> force) const 
   }
 }
 
+/// A bond's energy has the second derivative c / L along it and its force over its length across it.
+void Pmb::tangent(std::span<const double> u, std::size_t first, std::size_t last, TangentBlocks& to) const {
+  const int dimension = body().dimension;
+  for (std::size_t i = first; i < last; ++i)
+    for_each_pull(i, u, [&](const Pull& pull) {
+      if (pull.neighbour < i) return;
+      const Eigen::Vector3d e = pull.deformed.normalized();
+      const Eigen::Matrix3d stiffness =
+          weight_[i] * weight_[pull.neighbour] *
+          (pull.per_length * Eigen::Matrix3d::Identity() +
+           (micromodulus_ / pull.reference.norm() - pull.per_length) * e * e.transpose());
+      const std::array ends{static_cast<End>(pull.neighbour)};
+      add_family_block(i, ends, {}, stiffness.topLeftCorner(dimension, dimension), to);
+    });
+}
+
 std::vector<ModelField> Pmb::fields(std::span<const double> u) {
   const std::vector<std::size_t>& points = body().points;
   ModelField energy{"strain_energy_density", 1, std::vector<double>(points.size()), "J/m^3"};

@@ -37,6 +37,10 @@ class Pmb final : public PointModel {
   [[nodiscard]] double strain_energy(std::span<const double> u) override;
   [[nodiscard]] bool conservative() const override { return true; }
   void stiffness_bound(std::span<const double> u, std::span<double> bound) override;
+  /// A part is the bonds of a stored point to those that are stored behind it, a block each.
+  [[nodiscard]] std::size_t tangent_parts() const override { return body().size(); }
+  void tangent(std::span<const double> u, std::size_t first, std::size_t last,
+               TangentBlocks& to) const override;
   [[nodiscard]] std::optional<Breakdown> inspect(std::span<const double> u) override;
   [[nodiscard]] std::vector<ModelField> fields(std::span<const double> u) override;
   void save(Snapshot& to) const override;

@@ -82,6 +82,63 @@ void PointModel::push_inclusion(End surface, const Eigen::Vector2d& pull, std::s
   force[dof + 2] += (lever.x() * pull.y() - lever.y() * pull.x()) / inclusion.gyration;
 }
 
+void PointModel::add_family_block(std::size_t point, std::span<const End> ends,
+                                  const Eigen::VectorXd& gradient, const Eigen::MatrixXd& hessian,
+                                  TangentBlocks& to) const {
+  const Eigen::Index d = body_.dimension, bonds = hessian.rows();
+  // A bond is its end less its point, which comes first.
+  Eigen::MatrixXd block(d + bonds, d + bonds);
+  block.bottomRightCorner(bonds, bonds) = hessian;
+  block.topRows(d).setZero();
+  for (Eigen::Index b = 0; b < bonds; b += d) block.topRightCorner(d, bonds) -= hessian.middleRows(b, d);
+  block.bottomLeftCorner(bonds, d) = block.topRightCorner(d, bonds).transpose();
+  for (Eigen::Index b = d; b < d + bonds; b += d) block.topLeftCorner(d, d) -= block.block(0, b, d, d);
+
+  std::vector<std::size_t> dofs;
+  const auto add_end = [&](std::size_t end) {
+    for (int axis = 0; axis < body_.dimension; ++axis)
+      dofs.push_back(static_cast<std::size_t>(axis) * body_.size() + end);
+  };
+  add_end(point);
+  for (const End end : ends) add_end(end);
+  if (std::any_of(ends.begin(), ends.end(), [this](End end) { return is_surface(end); }))
+    move_to_inclusions(ends, gradient, dofs, block);
+  to.dofs.insert(to.dofs.end(), dofs.begin(), dofs.end());
+  to.begin.push_back(to.dofs.size());
+  to.values.insert(to.values.end(), block.data(), block.data() + block.size());
+}
+
+/// A surface point moves by q = (translation, angle times radius of gyration g): by 1 and by the turned arm
+/// over g, which itself turns, so that the pull on it adds to the second derivative by the angle.
+void PointModel::move_to_inclusions(std::span<const End> ends, const Eigen::VectorXd& gradient,
+                                    std::vector<std::size_t>& dofs, Eigen::MatrixXd& block) const {
+  const Eigen::Index rows = block.rows();
+  Eigen::MatrixXd moves =
+      Eigen::MatrixXd::Zero(rows, rows + 3 * static_cast<Eigen::Index>(inclusions_.size()));
+  Eigen::VectorXd turning = Eigen::VectorXd::Zero(moves.cols());
+  const Eigen::Index first = rows;  // column of the inclusions' entries
+  for (Eigen::Index r = 0; r < rows; ++r) moves(r, r) = 1;
+  for (std::size_t n = 0; n < ends.size(); ++n) {
+    if (!is_surface(ends[n])) continue;
+    const InterfaceBond& bond = body_.interface[ends[n] - body_.size()];
+    const Inclusion& inclusion = inclusions_[bond.inclusion];
+    const Eigen::Vector2d lever = inclusion.rotation * arm(bond) / inclusion.gyration;
+    const auto at = static_cast<Eigen::Index>(2 * n), row = at + 2,
+               column = first + 3 * static_cast<Eigen::Index>(bond.inclusion);
+    moves.block<2, 2>(row, row).setZero();
+    moves.block<2, 2>(row, column).setIdentity();
+    moves.block<2, 1>(row, column + 2) = Eigen::Vector2d(-lever.y(), lever.x());
+    turning(column + 2) -= gradient.segment<2>(at).dot(lever) / inclusion.gyration;
+  }
+  const Eigen::MatrixXd moved = moves.transpose() * block * moves;
+  block = moved + Eigen::MatrixXd(turning.asDiagonal());
+  // What the surface points' own entries have left is nothing; the point's are as good a name as any.
+  for (std::size_t n = 0; n < ends.size(); ++n)
+    if (is_surface(ends[n]))
+      std::copy_n(dofs.begin(), 2, dofs.begin() + static_cast<std::ptrdiff_t>(2 * n + 2));
+  for (std::size_t entry = inclusion_dof(0); entry < this->dofs(); ++entry) dofs.push_back(entry);
+}
+
 void PointModel::add_row(End end, double row, std::span<double> bound) const {
   if (!is_surface(end)) {
     for (int axis = 0; axis < body_.dimension; ++axis)

@@ -61,6 +61,10 @@ class PointModel : public Model {
   }
   /// Adds a force (N) on a surface point to the force on its inclusion.
   void push_inclusion(End surface, const Eigen::Vector2d& pull, std::span<double> force) const;
+  /// Appends the tangent block of a family, from the first and second derivatives of its energy by the
+  /// components of its deformed bonds, bond after bond (N, N/m). `ends`: of the bonds.
+  void add_family_block(std::size_t point, std::span<const End> ends, const Eigen::VectorXd& gradient,
+                        const Eigen::MatrixXd& hessian, TangentBlocks& to) const;
   /// Adds a row bound (N/m) of a bond's end to that of the entries that move it.
   void add_row(End end, double row, std::span<double> bound) const;
 
@@ -72,6 +76,9 @@ class PointModel : public Model {
     Eigen::Rotation2Dd rotation{0};  // of the state placed last
   };
 
+  /// Replaces the surface points among a block's ends by the entries of their inclusions.
+  void move_to_inclusions(std::span<const End> ends, const Eigen::VectorXd& gradient,
+                          std::vector<std::size_t>& dofs, Eigen::MatrixXd& block) const;
   /// From the inclusion's centre to a surface point (m).
   [[nodiscard]] Eigen::Vector2d arm(const InterfaceBond& bond) const;
 

@@ -23,12 +23,6 @@ BondMembraneSettings bond_settings(const ModelInput& in) {
 
 PmbSettings pmb_settings(const Case& in) {
   const MaterialInput& material = in.materials.front();
-  if (material.critical_stretch && in.solver.method != "verlet")
-    throw InputError(
-        material.at,
-        fmt::format("material.{}.critical_stretch: bonds break in motion only; expected method = "
-                    "\"verlet\" in [solver], or no critical_stretch",
-                    material.name));
   PmbSettings settings{.youngs_modulus = material.number("youngs_modulus").value(),
                        .density = material.density};
   if (material.critical_stretch) settings.critical_stretch = *material.critical_stretch;

@@ -115,6 +115,15 @@ void check_step(const Simulation& simulation) {
                                *solver.step, limit));
 }
 
+void check_solver(const Simulation& simulation) {
+  const Case& input = simulation.input;
+  if (input.solver.method != "newton" || simulation.model->tangent_parts() > 0) return;
+  throw InputError(input.solver.at,
+                   fmt::format("solver.method: the model \"{}\" has no tangent for \"newton\"; expected "
+                               "\"dynamic-relaxation\" or \"verlet\"",
+                               input.model.kind));
+}
+
 /// Every field asked for must be one that the model has.
 void check_fields(const Simulation& simulation) {
   const std::vector<double> rest(simulation.model->dofs(), 0.0);
@@ -324,6 +333,7 @@ std::string left_out(std::size_t expectations) {
 }
 
 void check_before_run(const Simulation& simulation, const Probes& probes) {
+  check_solver(simulation);
   check_tables(simulation);  // before the loads are asked for a state
   check_step(simulation);
   check_fields(simulation);

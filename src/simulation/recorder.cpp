@@ -57,6 +57,7 @@ void Recorder::each_member(Self& self, const Each& each) {
   State::each_member(self.last_, "recorder.last", each);
   each("recorder.last_values", self.last_values_);
   each("recorder.evaluations", self.evaluations_);
+  each("recorder.iterations", self.iterations_);
   each("recorder.last_written", self.last_written_);
   each("recorder.states", self.state_values_);
 }
@@ -125,6 +126,7 @@ double Recorder::wall_s() const {
 
 void Recorder::progressed(const SolverProgress& progress) {
   evaluations_ = progress.evaluations;
+  iterations_ = progress.iterations;
   ProgressState state;
   state.parameter = simulation_.parameter;
   state.value = progress.parameter;
@@ -143,6 +145,7 @@ void Recorder::progressed(const SolverProgress& progress) {
 void Recorder::reached(const State& state, const Constraints& constraints, bool output) {
   last_ = state;
   evaluations_ = state.evaluations;
+  iterations_ = state.iterations;
   last_written_ = false;
   last_values_ = probes_.evaluate(state, constraints);
   history_.add(state.parameter, last_values_);

@@ -41,6 +41,8 @@ class Recorder final : public Observer {
   [[nodiscard]] const State& last() const { return last_; }
   /// Force evaluations so far, those of an unfinished step included.
   [[nodiscard]] long evaluations() const { return evaluations_; }
+  /// Of static solvers.
+  [[nodiscard]] long iterations() const { return iterations_; }
   /// Wall time (s) so far, of the programs before a resumption too.
   [[nodiscard]] double wall_s() const;
 
@@ -64,7 +66,7 @@ class Recorder final : public Observer {
   Collection collection_;
   State last_;
   std::vector<double> last_values_;  // of the probes
-  long evaluations_ = 0;
+  long evaluations_ = 0, iterations_ = 0;
   bool last_written_ = true;
   std::vector<SummaryState> states_;
   std::vector<double>

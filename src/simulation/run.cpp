@@ -18,6 +18,7 @@
 #include "simulation/recorder.hpp"
 #include "simulation/resume.hpp"
 #include "solver/dynamic_relaxation.hpp"
+#include "solver/newton.hpp"
 #include "solver/velocity_verlet.hpp"
 
 namespace riven {
@@ -35,11 +36,12 @@ State solve(const Simulation& simulation, Observer& observer, const Snapshot* fr
     settings.initial_v = simulation.initial_v;
     return march(*simulation.model, *simulation.constraints, settings, observer, from);
   }
-  const DynamicRelaxationSettings settings{.targets = in.stretch,
-                                           .increment = in.increment,
-                                           .tolerance = in.tolerance,
-                                           .max_iterations = in.max_iterations};
-  return relax(*simulation.model, *simulation.constraints, settings, observer, from);
+  const LoadStepSettings settings{.targets = in.stretch,
+                                  .increment = in.increment,
+                                  .tolerance = in.tolerance,
+                                  .max_iterations = in.max_iterations};
+  const auto solve_statics = in.method == "newton" ? newton : relax;
+  return solve_statics(*simulation.model, *simulation.constraints, settings, observer, from);
 }
 
 std::string contents(const std::filesystem::path& path) {
@@ -115,7 +117,7 @@ Summary summary_of(const Recorder& recorder, const Simulation& simulation, RunSt
   summary.status = status;
   summary.case_name = options.case_name;
   summary.instruction_set = name(instruction_set());
-  if (simulation.parameter == Parameter::stretch) summary.timing.iterations = recorder.evaluations();
+  if (simulation.parameter == Parameter::stretch) summary.timing.iterations = recorder.iterations();
   summary.timing.bond_evaluations_per_second = static_cast<double>(recorder.evaluations()) *
                                                static_cast<double>(summary.timing.bonds) /
                                                summary.timing.wall_s;

@@ -41,6 +41,7 @@ struct State {
   std::vector<double> v;  // velocities; empty in statics
   EnergyBalance energy;
   long steps = 0;        // load or time steps
+  long iterations = 0;   // of statics, all steps together
   long evaluations = 0;  // of the force
 
   template <class Self, class Each>
@@ -50,6 +51,7 @@ struct State {
     each(name + ".v", self.v);
     EnergyBalance::each_member(self.energy, name + ".energy", each);
     each(name + ".steps", self.steps);
+    each(name + ".iterations", self.iterations);
     each(name + ".evaluations", self.evaluations);
   }
 };
@@ -62,6 +64,7 @@ struct SolverProgress {
   long step = 0;              // of `steps`, as far as one can tell (statics); taken (dynamics)
   long steps = 0;
   long iteration = 0;    // within the step
+  long iterations = 0;   // so far (statics)
   long evaluations = 0;  // of the force, so far
   double residual = 0;   // free force / reaction; 0 in dynamics
   double tolerance = 0;

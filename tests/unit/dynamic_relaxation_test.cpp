@@ -32,9 +32,7 @@ struct Problem {
                  law.material(), kStabilisation),
         constraints(constrain(membrane, loads)) {}
 
-  State solve(const DynamicRelaxationSettings& settings) {
-    return relax(membrane, constraints, settings, log);
-  }
+  State solve(const LoadStepSettings& settings) { return relax(membrane, constraints, settings, log); }
 
   Membrane membrane;
   Constraints constraints;

@@ -164,7 +164,8 @@ INSTANTIATE_TEST_SUITE_P(
               "found \"membran\"; expected one of membrane, membrane-bond, pmb, lps; did you mean "
               "\"membrane\"?"},
         Wrong{"\"neo-hookean\"", "\"neo-hokean\"", "18", "did you mean \"neo-hookean\"?"},
-        Wrong{"\"dynamic-relaxation\"", "\"newton\"", "26", "expected one of dynamic-relaxation, verlet"},
+        Wrong{"\"dynamic-relaxation\"", "\"newtons\"", "26",
+              "expected one of dynamic-relaxation, newton, verlet"},
         Wrong{"\"damage\"]", "\"damge\"]", "31:27", "output.fields.2: found \"damge\""},
         Wrong{"\"damage\"]", "\"displacement\"]", "31", "twice"},
         Wrong{"on = [\"left\"", "on = [\"lefft\"", "22:7", "did you mean \"left\"?"},

@@ -306,54 +306,6 @@ TEST(Lps, CutBondsCarryNothing) {
   }
 }
 
-Eigen::MatrixXd assembled(const Lps& model, const std::vector<double>& u) {
-  const auto size = static_cast<Eigen::Index>(model.dofs());
-  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(size, size);
-  TangentBlocks blocks;
-  const std::size_t half = model.tangent_blocks() / 2;
-  model.tangent(u, 0, half, blocks);
-  model.tangent(u, half, model.tangent_blocks(), blocks);
-  std::size_t at = 0;
-  for (std::size_t b = 0; b + 1 < blocks.begin.size(); ++b)
-    for (std::size_t r = blocks.begin[b]; r < blocks.begin[b + 1]; ++r)
-      for (std::size_t c = blocks.begin[b]; c < blocks.begin[b + 1]; ++c)
-        k(static_cast<Eigen::Index>(blocks.dofs[r]), static_cast<Eigen::Index>(blocks.dofs[c])) +=
-            blocks.values[at++];
-  EXPECT_EQ(at, blocks.values.size());
-  return k;
-}
-
-// The tangent is that of the force, with ghosts, in large deformations, and symmetric.
-TEST(Lps, HasTheTangentOfItsForce) {
-  Random random(19);
-  for (int n = 0; n < 8; ++n) {
-    const int dimension = 2 + n % 2;
-    LatticeBodyInput in = dimension == 2 ? cells_of({8, 6}, 2.2) : cells_of({4, 4, 3}, 1.5);
-    in.mirrored = dimension == 2 ? Faces(0b0111) : Faces(0b000001);
-    if (dimension == 2) in.defects.cracks.push_back({{-0.4, 0.01, 0}, {0.1, 0.01, 0}});
-    const Body lattice = make_lattice_body(in);
-    Lps model(n % 4 < 2 ? lattice : listed(lattice), random_settings(random));
-    const auto u = random_displacements(model, random, 0.08);
-    const Eigen::MatrixXd k = assembled(model, u);
-    // Products in another order.
-    EXPECT_LT((k - k.transpose()).norm(), 1e-15 * k.norm());
-    const auto direction = random_displacements(model, random, 1);
-    const double h = 1e-5;
-    auto ahead = u, behind = u;
-    for (std::size_t i = 0; i < u.size(); ++i) {
-      ahead[i] += h * direction[i];
-      behind[i] -= h * direction[i];
-    }
-    const auto f = force_of(model, ahead), g = force_of(model, behind);
-    const Eigen::VectorXd product = k * Eigen::Map<const Eigen::VectorXd>(direction.data(), k.cols());
-    double worst = 0;
-    for (std::size_t i = 0; i < u.size(); ++i)
-      worst = std::max(worst, std::abs(-(f[i] - g[i]) / (2 * h) - product[static_cast<Eigen::Index>(i)]));
-    // Differences err by h^2 over the square of a bond's length of 0.1 m.
-    EXPECT_LT(worst, 1e-8 * product.cwiseAbs().maxCoeff()) << n;
-  }
-}
-
 TEST(Lps, BoundsTheStiffnessTightly) {
   Random random(8);
   for (const double nu : {-0.3, 0.0, 0.25, 0.33, 0.45})

@@ -11,6 +11,7 @@
 #include "peridynamics/lps.hpp"
 #include "peridynamics/pmb.hpp"
 #include "solver/dynamic_relaxation.hpp"
+#include "solver/newton.hpp"
 #include "solver/velocity_verlet.hpp"
 #include "support/bodies.hpp"
 #include "support/laws.hpp"
@@ -79,6 +80,12 @@ const std::vector<SolverCase>& solvers() {
          Constraints loads = pull(model, [](double parameter) { return parameter; });
          Observer nobody;
          return relax(model, loads, {.targets = {stretch}, .tolerance = 1e-8}, nobody).u;
+       }},
+      {"Newton", [](const Model& model) { return model.tangent_parts() > 0; },
+       [](PointModel& model, double stretch) {
+         Constraints loads = pull(model, [](double parameter) { return parameter; });
+         Observer nobody;
+         return newton(model, loads, {.targets = {stretch}, .tolerance = 1e-8}, nobody).u;
        }},
       {"Verlet", [](const Model& model) { return model.conservative(); },
        [](PointModel& model, double stretch) {
