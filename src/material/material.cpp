@@ -257,12 +257,8 @@ std::size_t for_each_gradient(std::size_t n, const double* const* f, double* con
 template <int D>
 Eigen::Matrix<double, D, 1> speeds(const Eigen::Matrix<double, D * D, D * D>& a, double density,
                                    const Eigen::Matrix<double, D, 1>& n) {
-  Eigen::Matrix<double, D, D> acoustic = Eigen::Matrix<double, D, D>::Zero();
-  for (int i = 0; i < D; ++i)
-    for (int k = 0; k < D; ++k)
-      for (int J = 0; J < D; ++J)
-        for (int L = 0; L < D; ++L) acoustic(i, k) += a(D * i + J, D * k + L) * n(J) * n(L);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D, D>> solver(acoustic, Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D, D>> solver(acoustic_tensor<D>(a, n),
+                                                                          Eigen::EigenvaluesOnly);
   return solver.eigenvalues().unaryExpr(
       [&](double value) { return std::copysign(std::sqrt(std::abs(value) / density), value); });
 }
