@@ -150,7 +150,7 @@ void write(const fs::path& folder, const Sheet& sheet, PictureSize size) {
   const std::string& name = sheet.material.name;
   fmt::print("{}: {}, {}\n", name, sheet.law, moduli_text(sheet.material));
   for (const Instability& instability : instabilities(sheet.material, sheet.range.low, sheet.range.high))
-    fmt::print("  warning: {}\n", text(instability));
+    fmt::print("  warning: {}\n", instability_text(instability));
   for (const Plot& plot : sheet.plots) {
     const fs::path table = file_of(folder, name, plot, ".csv"), picture = file_of(folder, name, plot, ".png");
     write_table(table, plot);

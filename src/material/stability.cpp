@@ -80,7 +80,7 @@ std::vector<Instability> instabilities(const Material& material, double low, dou
   return found;
 }
 
-std::string text(const Instability& instability) {
+std::string instability_text(const Instability& instability) {
   const bool tension = instability.stretch > 1;
   const std::string where = fmt::format("in {} {} from a stretch of {:.4g} {}", name(instability.deformation),
                                         tension ? "tension" : "compression", instability.stretch,

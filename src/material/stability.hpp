@@ -29,6 +29,6 @@ struct Instability {
 std::vector<Instability> instabilities(const Material& material, double low, double high);
 
 /// For people: "in uniaxial tension from a stretch of 1.291 on, strong ellipticity is lost: ...".
-std::string text(const Instability& instability);
+std::string instability_text(const Instability& instability);
 
 }  // namespace riven

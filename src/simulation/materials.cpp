@@ -57,8 +57,8 @@ std::vector<std::string> stability_warnings(const Case& input) {
   for (const MaterialInput& in : input.materials) {
     if (!is_complete(in)) continue;
     for (const Instability& instability : instabilities(make_material(in), stretches.low, stretches.high))
-      lines.push_back(
-          fmt::format("material {}: {} (looked at: {})", in.name, text(instability), stretches.why));
+      lines.push_back(fmt::format("material {}: {} (looked at: {})", in.name, instability_text(instability),
+                                  stretches.why));
   }
   return lines;
 }

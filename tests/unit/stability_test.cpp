@@ -120,6 +120,14 @@ TEST(Stability, OfSheetsWhoseStressTurnsBack) {
               mooney, 1e-6);
 }
 
+// 1 lies outside of the range; from rest the states beyond it are reached nevertheless, and told once.
+TEST(Stability, OfARangeOnOneSide) {
+  const Material material{"", Yeoh{1, -0.1, 0}, 1};
+  EXPECT_EQ(instabilities(material, 1.5, 3).size(), instabilities(material, 1, 3).size());
+  EXPECT_EQ(instabilities(material, 0.4, 0.6).size(), instabilities(material, 0.4, 1).size());
+  EXPECT_TRUE(instabilities(material, 1.2, 1.3).empty());
+}
+
 // Strong ellipticity says that the energy is convex along every a (x) n. Coarse directions: 1 % beside the
 // border.
 TEST(Stability, IsLostWhereTheEnergyCeasesToBeConvexAlongRankOne) {
@@ -155,7 +163,7 @@ TEST(Stability, IsLostWhereTheEnergyCeasesToBeConvexAlongRankOne) {
       };
       for (const Instability& i : instabilities(material, 0.45, 3)) {
         if (i.kind != Kind::ellipticity) continue;
-        SCOPED_TRACE(law.name + ": " + text(i));
+        SCOPED_TRACE(law.name + ": " + instability_text(i));
         const double away = 0.01 * (i.stretch - 1);
         EXPECT_GT(curvature(i.deformation, i.stretch - away), 0);
         EXPECT_LT(curvature(i.deformation, i.stretch + away), 0);
@@ -184,14 +192,14 @@ TEST(Stability, LooksAtAllDirections) {
 }
 
 TEST(Stability, IsToldInWords) {
-  EXPECT_EQ(text({Deformation::uniaxial, Kind::ellipticity, 1.29083}),
+  EXPECT_EQ(instability_text({Deformation::uniaxial, Kind::ellipticity, 1.29083}),
             "in uniaxial tension from a stretch of 1.291 upwards strong ellipticity is lost: deformation may "
             "localise in bands");
   EXPECT_EQ(
-      text({Deformation::planar, Kind::stress, 0.57735}),
+      instability_text({Deformation::planar, Kind::stress, 0.57735}),
       "in planar compression from a stretch of 0.5774 downwards the nominal stress does not fall as the "
       "stretch falls");
-  EXPECT_EQ(text({Deformation::equibiaxial, Kind::end, 2.5}),
+  EXPECT_EQ(instability_text({Deformation::equibiaxial, Kind::end, 2.5}),
             "in equibiaxial tension from a stretch of 2.5 upwards the law has no answer");
 }
 
