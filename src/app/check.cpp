@@ -10,8 +10,10 @@
 #include "base/text.hpp"
 #include "input/case_reader.hpp"
 #include "input/case_writer.hpp"
+#include "input/material_format.hpp"
 #include "input/schema.hpp"
 #include "simulation/estimate.hpp"
+#include "simulation/materials.hpp"
 #include "simulation/preflight.hpp"
 #include "simulation/probes.hpp"
 #include "solver/velocity_verlet.hpp"
@@ -94,6 +96,8 @@ void print_model(const Simulation& simulation) {
       on == nullptr ? std::string("listed") : fmt::format("{} neighbours", on->stencil.size());
   fmt::print("# bonds: {} directed, {} within the horizon of {:g} spacings\n", model.bonds(), neighbours,
              body.horizon / body.spacing);
+  for (const MaterialInput& in : simulation.input.materials)
+    if (is_complete(in)) fmt::print("# material {}: {}\n", in.name, moduli_text(make_material(in)));
   for (const std::string& line : model.describe()) fmt::print("# {}\n", line);
   print_sets(simulation);
   print_initial("displacement", "m", simulation.initial_u, simulation);

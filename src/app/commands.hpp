@@ -53,6 +53,17 @@ struct PlotOptions {
   std::string size;              // "1600x1200"; empty: that, without empty margins
 };
 
+struct MaterialOptions {
+  std::string target;            // case file or the name of a shipped case
+  std::vector<std::string> set;  // --set path=value
+  std::filesystem::path output;  // -o; empty: the default
+  std::string material;          // empty: all of the case
+  std::string range;             // of stretches, "0.5, 3"; empty: by the law
+  int points = 101;
+  std::string size;  // of pictures, "1600x1200"; empty: that
+  bool force = false;
+};
+
 struct VerifyOptions {
   bool brief = false;    // run the [short] variants
   bool gallery = false;  // write a page that shows all cases
@@ -90,6 +101,8 @@ int report(const ReportOptions& options);
 int report_after(const std::vector<std::filesystem::path>& results, const std::filesystem::path& folder);
 /// Draws fields or histories of a result.
 int plot(const PlotOptions& options);
+/// Writes and draws the curves of the materials of a case.
+int material(const MaterialOptions& options);
 /// Runs a case with all combinations of some values.
 int sweep(const SweepOptions& options);
 

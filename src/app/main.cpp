@@ -82,6 +82,7 @@ class CommandLine {
     add_compare();
     add_report();
     add_plot();
+    add_material();
     add_sweep();
     add_schema();
     add("version", "Print the version", [] {
@@ -214,6 +215,25 @@ class CommandLine {
     add_to_field("--map", to.map, "Colours (default: by the values)");
   }
 
+  void add_material() {
+    MaterialOptions& to = material_;
+    CLI::App& command = add("material", "Curves of the materials of a case: riven material CASE",
+                            [&to] { return material(to); });
+    command.add_option("case", to.target, "Case file, or the name of a shipped case")->required();
+    command.add_option("--set", to.set, "Override a key of the case: path.to.key=value (may be repeated)")
+        ->type_size(1)
+        ->allow_extra_args(false);
+    command.add_option("--material", to.material, "Only this one");
+    command.add_option("--range", to.range,
+                       "Stretches from a to b: a,b (default: 0.7,3 of rubbers; 0.9,1.1 of laws with a "
+                       "Poisson's ratio)");
+    command.add_option("--points", to.points, "Points of each curve (default: 101)")
+        ->check(CLI::Range(2, 1000000));
+    command.add_option("--size", to.size, "Pixels of the pictures (default: 1600x1200)");
+    command.add_option("-o,--output", to.output, "Folder of the curves (default: results/<case>-material)");
+    command.add_flag("--force", to.force, "Replace files that exist");
+  }
+
   void add_sweep() {
     SweepOptions& to = sweep_;
     CLI::App& command = add("sweep", "Run a case with several values of some keys: riven sweep CASE KEY=a,b",
@@ -247,6 +267,7 @@ class CommandLine {
   ReportOptions report_;
   CompareOptions comparison_;
   PlotOptions plot_;
+  MaterialOptions material_;
   SweepOptions sweep_;
   VerifyOptions verification_;
   bool markdown_ = false;

@@ -24,6 +24,7 @@ struct Range {
   double low = -std::numeric_limits<double>::infinity();
   bool above_low = false;  // the lower end is excluded
   double high = std::numeric_limits<double>::infinity();
+  bool below_high = false;  // the upper end is excluded
 };
 inline constexpr Range any_number{};
 inline constexpr Range positive{.low = 0, .above_low = true};

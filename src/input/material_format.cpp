@@ -74,7 +74,8 @@ std::vector<Group> alternatives(const MaterialInput& m) {
 
 Range range_of(ParameterKind::Range range) {
   if (range == ParameterKind::Range::positive) return positive;
-  if (range == ParameterKind::Range::poissons_ratio) return {.low = -1, .above_low = true, .high = 0.5};
+  if (range == ParameterKind::Range::poissons_ratio)
+    return {.low = -1, .above_low = true, .high = 0.5, .below_high = true};
   return any_number;
 }
 
@@ -101,10 +102,6 @@ void check_material(const MaterialInput& m, const Case& c, const Check& check) {
                                   m.law));
   if (c.model.kind == "lps" && m.law == LinearElastic::name && !m.number("poissons_ratio"))
     check.fail("poissons_ratio", "missing; expected a number above -1 and below 0.5");
-  if (m.number("poissons_ratio") == 0.5)
-    check.fail(
-        "poissons_ratio",
-        "found 0.5; expected a number above -1 and below 0.5, or a rubber's law such as \"neo-hookean\"");
   if (!m.volumetric.empty() && !m.bulk_modulus)
     check.fail("volumetric",
                "says how volume changes, which needs bulk_modulus; without it the law is incompressible");

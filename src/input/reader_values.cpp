@@ -43,10 +43,12 @@ void check_among(const std::string& text, const std::vector<std::string>& among,
 
 void check_range(double value, const Range& range, const Dimension& dimension, const Origin& origin) {
   const bool low = range.above_low ? value > range.low : value >= range.low;
-  if (low && value <= range.high) return;
+  const bool high = range.below_high ? value < range.high : value <= range.high;
+  if (low && high) return;
   const std::string unit = dimension == dimension::none ? "" : fmt::format(" {}", si_unit(dimension));
   std::string expected = fmt::format("{} {:g}{}", range.above_low ? "above" : "at least", range.low, unit);
-  if (std::isfinite(range.high)) expected += fmt::format(" and at most {:g}{}", range.high, unit);
+  if (std::isfinite(range.high))
+    expected += fmt::format(" and {} {:g}{}", range.below_high ? "below" : "at most", range.high, unit);
   origin.fail(fmt::format("found {:g}{}; expected a value {}", value, unit, expected));
 }
 

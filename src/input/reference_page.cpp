@@ -20,7 +20,8 @@ std::string range_text(const Range& range, const Dimension& dimension) {
   std::string text;
   if (std::isfinite(range.low))
     text += fmt::format(", {} {:g}{}", range.above_low ? "above" : "at least", range.low, unit);
-  if (std::isfinite(range.high)) text += fmt::format(", at most {:g}{}", range.high, unit);
+  if (std::isfinite(range.high))
+    text += fmt::format(", {} {:g}{}", range.below_high ? "below" : "at most", range.high, unit);
   return text;
 }
 

@@ -15,7 +15,7 @@ Json table_schema(const Format& format);
 Json number_schema(const Range& range) {
   Json schema{{"type", "number"}};
   if (std::isfinite(range.low)) schema[range.above_low ? "exclusiveMinimum" : "minimum"] = range.low;
-  if (std::isfinite(range.high)) schema["maximum"] = range.high;
+  if (std::isfinite(range.high)) schema[range.below_high ? "exclusiveMaximum" : "maximum"] = range.high;
   return schema;
 }
 

@@ -67,25 +67,29 @@ double isochoric(const L& law, const Matrix3& f, double j, const Matrix3& g, Mat
   return e.w;
 }
 
-/// The same of J^(-1/3) times the principal stretches, eq. (7).
+/// The energy of `scale` = J^(-1/3) times the principal stretches, eq. (7).
+template <OfStretches L>
+PrincipalEnergy<3> isochoric_energy(const L& law, double scale, const Eigen::Vector3d& l) {
+  PrincipalEnergy<3> e;
+  Eigen::Vector3d t, d;
+  for (int a = 0; a < 3; ++a) {
+    const StretchEnergy one = law(scale * l(a));
+    e.w += one.f;
+    t(a) = one.t;
+    d(a) = one.d;
+  }
+  e.t = t.array() - t.mean();
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) e.d(a, b) = (a == b ? d(a) : 0) - (d(a) + d(b)) / 3 + d.sum() / 9;
+  return e;
+}
+
 template <OfStretches L>
 double isochoric(const L& law, const Matrix3& f, double j, const Matrix3& /*g*/, Matrix3& stress,
                  Tangent3* tangent) {
-  const auto energy = [&](const Eigen::Vector3d& l) {
-    PrincipalEnergy<3> e;
-    Eigen::Vector3d t, d;
-    for (int a = 0; a < 3; ++a) {
-      const StretchEnergy one = law(std::cbrt(1 / j) * l(a));
-      e.w += one.f;
-      t(a) = one.t;
-      d(a) = one.d;
-    }
-    e.t = t.array() - t.mean();
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) e.d(a, b) = (a == b ? d(a) : 0) - (d(a) + d(b)) / 3 + d.sum() / 9;
-    return e;
-  };
-  return principal_response<3>(f, energy, stress, tangent);
+  const double scale = 1 / std::cbrt(j);
+  return principal_response<3>(
+      f, [&](const Eigen::Vector3d& l) { return isochoric_energy(law, scale, l); }, stress, tangent);
 }
 
 template <class L>
@@ -136,48 +140,159 @@ double plane_strain_response(const L& law, const std::optional<Volumetric>& volu
   return w;
 }
 
-/// Thickness stretch without stress across the plane, by the secant method on the second Piola-Kirchhoff
-/// stress, which does not vanish because a sheet collapses. The first guess is exact for small strain.
+/// A compressible sheet at some thickness, given by the cube root of its J: then no root is to be taken.
+struct Sheet {
+  Matrix2 f;
+  double c = 1;                                        // J^(1/3)
+  double t = f.squaredNorm(), area = f.determinant();  // F:F and det F in the plane
+  [[nodiscard]] double j() const { return c * c * c; }
+  [[nodiscard]] double thickness() const { return j() / area; }
+};
+
+/// h dW/dh of the thickness stretch h, and its derivative with respect to ln h.
+struct Across {
+  double force = 0, slope = 0;
+};
+
+/// What W(I1, I2) says of a sheet, with I1 = F:F + h^2 and I2 = det F^2 + F:F h^2 of the F in the plane.
+template <OfInvariants L>
+struct SheetEnergy {
+  double z, i1, i2, a, b;
+  double first = 0, second = 0, u;  // U'(J), U''(J), U
+  InvariantEnergy e;
+
+  SheetEnergy(const L& law, const Volumetric& volumetric, const Sheet& sheet)
+      : z(sheet.thickness() * sheet.thickness()),
+        i1(sheet.t + z),
+        i2(sheet.area * sheet.area + sheet.t * z),
+        a(1 / (sheet.c * sheet.c)),
+        b(a * a),
+        u(volume_energy(volumetric, sheet.j(), first, second)),
+        e(law(a * i1, b * i2)) {}
+};
+
+template <OfInvariants L>
+Across across(const L& law, const std::optional<Volumetric>& volumetric, const Sheet& sheet) {
+  const SheetEnergy<L> w(law, *volumetric, sheet);
+  const double j = sheet.j(), tz = sheet.t * w.z;
+  const double d1 = w.a * (2 * w.z - 2.0 / 3 * w.i1), d2 = w.b * (2 * tz - 4.0 / 3 * w.i2),
+               dd1 = w.a * (4.0 / 3 * w.z + 4.0 / 9 * w.i1), dd2 = w.b * (16.0 / 9 * w.i2 - 4.0 / 3 * tz);
+  return {w.e.w1 * d1 + w.e.w2 * d2 + w.first * j, w.e.w1 * dd1 + w.e.w2 * dd2 + w.e.w11 * d1 * d1 +
+                                                       2 * w.e.w12 * d1 * d2 + w.e.w22 * d2 * d2 +
+                                                       (w.second * j + w.first) * j};
+}
+
+/// Energy and stress in the plane, the derivatives of the same.
+template <OfInvariants L>
+double in_plane(const L& law, const std::optional<Volumetric>& volumetric, const Sheet& sheet,
+                Matrix2& stress) {
+  const SheetEnergy<L> w(law, *volumetric, sheet);
+  const double along_g = w.first * sheet.j() - 2.0 / 3 * w.e.w1 * w.a * w.i1 +
+                         w.e.w2 * w.b * (2 * sheet.area * sheet.area - 4.0 / 3 * w.i2);
+  stress = 2 * (w.e.w1 * w.a + w.e.w2 * w.b * w.z) * sheet.f + along_g * sheet.f.inverse().transpose();
+  return w.e.w + w.u;
+}
+
+/// Principal stretches of F in the plane: their sum and difference follow from F:F and det F.
+template <OfStretches L>
+Across across(const L& law, const std::optional<Volumetric>& volumetric, const Sheet& sheet) {
+  const double larger =
+      0.5 * (std::sqrt(sheet.t + 2 * sheet.area) + std::sqrt(std::max(sheet.t - 2 * sheet.area, 0.0)));
+  const PrincipalEnergy<3> e =
+      isochoric_energy(law, 1 / sheet.c, {larger, sheet.area / larger, sheet.thickness()});
+  const double j = sheet.j();
+  double first = 0, second = 0;
+  volume_energy(*volumetric, j, first, second);
+  return {e.t(2) + first * j, e.d(2, 2) + (second * j + first) * j};
+}
+
+template <OfStretches L>
+double in_plane(const L& law, const std::optional<Volumetric>& volumetric, const Sheet& sheet,
+                Matrix2& stress) {
+  const double j = sheet.j();
+  double first = 0, second = 0;
+  const double u = volume_energy(*volumetric, j, first, second);
+  const auto energy = [&](const Eigen::Vector2d& l) {
+    const PrincipalEnergy<3> e = isochoric_energy(law, 1 / sheet.c, {l(0), l(1), sheet.thickness()});
+    return PrincipalEnergy<2>{e.w + u, e.t.head<2>().array() + first * j,
+                              e.d.topLeftCorner<2, 2>().array() + (second * j + first) * j};
+  };
+  return principal_response<2>(sheet.f, energy, stress, nullptr);
+}
+
+template <OfGradient L>
+double in_plane(const L& law, const std::optional<Volumetric>& volumetric, const Sheet& sheet,
+                Matrix2& stress) {
+  Matrix3 whole;
+  const double w = evaluate(law, volumetric, in_space(sheet.f, sheet.thickness()), whole, nullptr);
+  stress = whole.topLeftCorner<2, 2>();
+  return w;
+}
+
+/// Finds the thickness without stress across the plane, if there is one. The first guess is exact for small
+/// strain. Of nearly incompressible laws by Newton's method on the first Piola-Kirchhoff stress, which is
+/// nearly linear in J.
 template <class L>
-double free_thickness(const L& law, const std::optional<Volumetric>& volumetric, const SmallStrain& moduli,
-                      const Matrix2& f) {
+bool relieve(const L& law, const std::optional<Volumetric>& volumetric, const SmallStrain& moduli,
+             Sheet& sheet) {
+  constexpr int kMost = 50;
+  constexpr double kConverged = 1e-8;  // of J^(1/3): the next step would be its square
+  const double nu = moduli.poissons_ratio();
+  if (!(sheet.area > 0)) return false;
+  sheet.c = std::pow(sheet.area, (1 - 2 * nu) / (3 - 3 * nu));
+  for (int n = 0; n < kMost; ++n) {
+    const Across found = across(law, volumetric, sheet);
+    const double step = found.force / (found.slope - found.force) / 3;
+    sheet.c *= std::min(std::max(1 - step, 0.8), 1.25);
+    if (std::abs(step) < kConverged) return true;
+  }
+  return false;
+}
+
+/// Of others by the secant method, which spares their tangents, on the second Piola-Kirchhoff stress, which
+/// does not vanish because a sheet collapses.
+template <OfGradient L>
+bool relieve(const L& law, const std::optional<Volumetric>& volumetric, const SmallStrain& moduli,
+             Sheet& sheet) {
   constexpr int kMost = 50;
   constexpr double kConverged = 1e-14, kAccepted = 1e-10;  // of the longitudinal modulus
-  const double nu = moduli.poissons_ratio(), area = f.determinant(), modulus = moduli.longitudinal();
-  if (!(area > 0)) return kNotANumber;
-  const auto across = [&](double thickness) {
+  const double nu = moduli.poissons_ratio(), modulus = moduli.longitudinal();
+  if (!(sheet.area > 0)) return false;
+  const auto second = [&](double thickness) {
     Matrix3 stress;
-    evaluate(law, volumetric, in_space(f, thickness), stress, nullptr);
+    evaluate(law, volumetric, in_space(sheet.f, thickness), stress, nullptr);
     return stress(2, 2) / (thickness * modulus);
   };
-  double last = std::pow(area, -nu / (1 - nu)), last_stress = across(last), next = last * (1 - last_stress);
+  double last = std::pow(sheet.area, -nu / (1 - nu)), last_stress = second(last),
+         next = last * (1 - last_stress);
   for (int n = 0; n < kMost && std::abs(last_stress) > kConverged && next != last; ++n) {
     next = std::min(std::max(next, 0.5 * last), 2 * last);
-    const double stress = across(next), slope = (stress - last_stress) / (next - last);
+    const double stress = second(next), slope = (stress - last_stress) / (next - last);
     last = next;
     last_stress = stress;
     next = last - stress / slope;
     if (!std::isfinite(next)) break;
   }
-  return std::abs(last_stress) < kAccepted ? last : kNotANumber;
+  sheet.c = std::cbrt(sheet.area * last);
+  return std::abs(last_stress) < kAccepted;
 }
 
-/// Compressible sheet: the response of space at that thickness, condensed.
+/// Compressible sheet at that thickness; the tangent is that of space, condensed.
 template <class L>
 double free_sheet(const L& law, const std::optional<Volumetric>& volumetric, const SmallStrain& moduli,
                   const Matrix2& f, Matrix2& stress, Tangent2* tangent) {
-  const double thickness = free_thickness(law, volumetric, moduli, f);
-  if (!(thickness > 0)) return kNotANumber;
-  Matrix3 whole;
-  Tangent3 a;
-  const double w =
-      evaluate(law, volumetric, in_space(f, thickness), whole, tangent != nullptr ? &a : nullptr);
-  stress = whole.topLeftCorner<2, 2>();
-  for (int r = 0; tangent != nullptr && r < 4; ++r)
-    for (int c = 0; c < 4; ++c)
-      (*tangent)(r, c) = a(kInPlane[r], kInPlane[c]) -
-                         a(kInPlane[r], kAcross) * a(kAcross, kInPlane[c]) / a(kAcross, kAcross);
-  return w;
+  Sheet sheet{f};
+  if (!relieve(law, volumetric, moduli, sheet)) return kNotANumber;
+  if (tangent != nullptr) {
+    Matrix3 whole;
+    Tangent3 a;
+    evaluate(law, volumetric, in_space(f, sheet.thickness()), whole, &a);
+    for (int r = 0; r < 4; ++r)
+      for (int c = 0; c < 4; ++c)
+        (*tangent)(r, c) = a(kInPlane[r], kInPlane[c]) -
+                           a(kInPlane[r], kAcross) * a(kAcross, kInPlane[c]) / a(kAcross, kAcross);
+  }
+  return in_plane(law, volumetric, sheet, stress);
 }
 
 /// Incompressible sheet in closed form, eq. (9) to (11).
@@ -257,12 +372,8 @@ std::size_t for_each_gradient(std::size_t n, const double* const* f, double* con
 template <int D>
 Eigen::Matrix<double, D, 1> speeds(const Eigen::Matrix<double, D * D, D * D>& a, double density,
                                    const Eigen::Matrix<double, D, 1>& n) {
-  Eigen::Matrix<double, D, D> acoustic = Eigen::Matrix<double, D, D>::Zero();
-  for (int i = 0; i < D; ++i)
-    for (int k = 0; k < D; ++k)
-      for (int J = 0; J < D; ++J)
-        for (int L = 0; L < D; ++L) acoustic(i, k) += a(D * i + J, D * k + L) * n(J) * n(L);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D, D>> solver(acoustic, Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D, D>> solver(acoustic_tensor<D>(a, n),
+                                                                          Eigen::EigenvaluesOnly);
   return solver.eigenvalues().unaryExpr(
       [&](double value) { return std::copysign(std::sqrt(std::abs(value) / density), value); });
 }
@@ -328,7 +439,9 @@ PlaneResponse Material::plane_stress(const Matrix2& f) const {
 double Material::thickness_stretch(const Matrix2& f) const {
   if (incompressible()) return 1 / f.determinant();
   const SmallStrain moduli = small_strain();
-  return std::visit([&](const auto& l) { return free_thickness(l, volumetric, moduli, f); }, law);
+  Sheet sheet{f};
+  const bool found = std::visit([&](const auto& l) { return relieve(l, volumetric, moduli, sheet); }, law);
+  return found ? sheet.thickness() : kNotANumber;
 }
 
 std::size_t Material::stress(Kinematics kinematics, std::size_t n, const double* const* f, double* const* p,

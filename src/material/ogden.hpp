@@ -31,8 +31,9 @@ struct Ogden {
   /// W is the sum of this over the principal stretches.
   StretchEnergy operator()(double stretch) const {
     StretchEnergy e;
+    const double log = std::log(stretch);
     for (std::size_t n = 0; n < mu.size(); ++n) {
-      const double power = std::pow(stretch, alpha[n]);
+      const double power = std::exp(alpha[n] * log);
       e.f += mu[n] / alpha[n] * (power - 1);
       e.t += mu[n] * power;
       e.d += mu[n] * alpha[n] * power;

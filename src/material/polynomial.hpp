@@ -5,7 +5,8 @@
 
 namespace riven {
 
-/// General polynomial (Rivlin 1951) to the third degree: W = sum of Cij (I1 - 3)^i (I2 - 3)^j, 1 <= i + j
+/// General polynomial (Rivlin 1951) to the third degree, no further: W = sum of Cij (I1 - 3)^i (I2 - 3)^j, 1
+/// <= i + j
 /// <= 3.
 struct Polynomial {
   static constexpr const char* name = "polynomial";

@@ -36,4 +36,17 @@ Eigen::Matrix<double, D * D, D * D> derivative_of_inverse_transpose(const Eigen:
   return b;
 }
 
+/// The acoustic tensor A_iJkL n_J n_L (Pa), whose eigenvalues are density times squared speeds of plane waves
+/// along `n`.
+template <int D>
+Eigen::Matrix<double, D, D> acoustic_tensor(const Eigen::Matrix<double, D * D, D * D>& a,
+                                            const Eigen::Matrix<double, D, 1>& n) {
+  Eigen::Matrix<double, D, D> q = Eigen::Matrix<double, D, D>::Zero();
+  for (int i = 0; i < D; ++i)
+    for (int k = 0; k < D; ++k)
+      for (int J = 0; J < D; ++J)
+        for (int L = 0; L < D; ++L) q(i, k) += a(D * i + J, D * k + L) * n(J) * n(L);
+  return q;
+}
+
 }  // namespace riven

@@ -257,10 +257,7 @@ std::size_t Membrane::points_by_gradient() const {
 }
 
 std::vector<std::string> Membrane::describe() const {
-  const double mu = material_.small_strain().shear;
-  return {fmt::format("material {}: shear modulus {:.6g} Pa, Young's modulus {:.6g} Pa (incompressible)",
-                      material_.name, mu, 3 * mu),
-          fmt::format("weights: {} points by least squares, {} by the deformation gradient",
+  return {fmt::format("weights: {} points by least squares, {} by the deformation gradient",
                       points_by_least_squares(), points_by_gradient())};
 }
 

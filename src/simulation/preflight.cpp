@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/nearest_name.hpp"
+#include "simulation/materials.hpp"
 #include "solver/velocity_verlet.hpp"
 #include "verification/reference_points.hpp"
 
@@ -379,6 +380,8 @@ std::vector<std::string> warnings(const Simulation& simulation) {
     warn_of_lonely_points(simulation, list);
     warn_of_families(simulation, list);
   }
+  const std::vector<std::string> unstable = stability_warnings(simulation.input);
+  list.insert(list.end(), unstable.begin(), unstable.end());
   for (const Shape& inclusion : body.defects.inclusions) {
     bool near = false;
     for (std::size_t face = 0; face < 4; ++face) {

@@ -9,7 +9,7 @@ import unittest
 from program import HOLE, MOVING, PLAIN, PROGRAM, ROOT, ProgramTest, replaced
 
 CASES = sorted((ROOT / "cases").rglob("*.toml"), key=lambda path: path.with_suffix(""))
-COMMANDS = ["new", "run", "check", "cases", "verify", "compare", "report", "plot", "sweep", "schema", "version", "help"]
+COMMANDS = ["new", "run", "check", "cases", "verify", "compare", "report", "plot", "material", "sweep", "schema", "version", "help"]
 
 
 def mistakes(schema, value, path=""):
