@@ -82,8 +82,8 @@ void print_model(const Simulation& simulation) {
   double volume = 0;
   for (const std::size_t i : body.points) volume += body.volume[i];
   if (const auto& points = simulation.input.geometry.points)
-    fmt::print("# points: {} in {}, filling {}\n", points->list->position.size(), points->list->file,
-               extent_text(body));
+    fmt::print("# {}: {} in {}, filling {}\n", points->is_mesh() ? "elements" : "points",
+               points->list->position.size(), points->list->file, extent_text(body));
   const LatticeBonds* on = body.on_lattice();
   const std::string cells = on == nullptr
                                 ? std::string("with listed bonds, mean spacing")

@@ -84,8 +84,10 @@ void keep_tables(Case& input, const std::filesystem::path& folder) {
   if (!input.tables.empty() || input.geometry.points) std::filesystem::create_directories(folder / "tables");
   if (input.geometry.points) {
     // No table has this name: formulas could not call it.
-    std::filesystem::copy_file(input.geometry.points->list->file, folder / "tables/geometry-points.csv");
-    input.geometry.points->file = "tables/geometry-points.csv";
+    const std::string copy =
+        input.geometry.points->is_mesh() ? "tables/geometry-mesh.msh" : "tables/geometry-points.csv";
+    std::filesystem::copy_file(input.geometry.points->list->file, folder / copy);
+    input.geometry.points->file = copy;
   }
   for (TableInput& table : input.tables) {
     const std::string copy = fmt::format("tables/{}.csv", table.name);
