@@ -143,6 +143,7 @@ ElementMeasure measure(const Mesh& mesh, const ElementBlock& block, std::size_t 
   sum.one_sided = least > 0 || most < 0;
   const Point& origin = mesh.node[block.corners(element)[0]];
   for (std::size_t d = 0; d < 3; ++d) sum.centroid[d] = origin[d] + sum.centroid[d] / sum.size;
+  if (dimension_of(block.kind) == 2) sum.centroid[2] = 0;
   return sum;
 }
 

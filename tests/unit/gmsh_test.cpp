@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "base/error.hpp"
@@ -64,7 +65,8 @@ TEST_F(Gmsh, IsReadFromText) {
       "$PhysicalNames\n1\n2 5 \"rubber sheet\"\n$EndPhysicalNames\n"
       "$Entities\n1 0 2 0\n9 0 0 0 0\n3 0 0 0 1 1 0 1 -5 0\n4 0 0 0 1 1 0 1 6 0\n$EndEntities\n"
       // The second block says where its node lies on the surface.
-      "$Nodes\n2 4 1 30\n2 3 0 3\n1\n2\n30\n0 0 0\n1 0 0\n1 1 0\n2 4 1 1\n4\n-0.0 1.0e0 0 0.5 0.25\n$EndNodes\n"
+      "$Nodes\n2 4 1 30\n2 3 0 3\n1\n2\n30\n0 0 0\n1 0 0\n1 1 0\n2 4 1 1\n4\n-0.0 1.0e0 0 0.5 "
+      "0.25\n$EndNodes\n"
       "$Elements\n3 3 1 3\n0 9 15 1\n8 1\n2 3 2 1\n7 1 2 30\n2 4 2 1\n6 1 30 4\n$EndElements\n");
   EXPECT_EQ(mesh.node, (std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
   ASSERT_EQ(mesh.blocks.size(), 3U);
@@ -106,6 +108,46 @@ TEST_F(Gmsh, OfSecondOrderGivesTheCorners) {
   EXPECT_EQ(mesh.blocks[0].kind, ElementKind::triangle);
   EXPECT_EQ(mesh.blocks[0].node, (std::vector<std::uint32_t>{0, 1, 2}));
   EXPECT_DOUBLE_EQ(measure(mesh, mesh.blocks[0], 0).size, 2);
+}
+
+/// Elements of each kind, and what they cover together by group; tests/data/gmsh has the drawings.
+struct Inventory {
+  std::map<ElementKind, std::size_t> elements;
+  std::map<std::string, double> size;  // of groups of the mesh's dimension
+
+  explicit Inventory(const Mesh& mesh) {
+    for (const ElementBlock& block : mesh.blocks) {
+      elements[block.kind] += block.size();
+      if (dimension_of(block.kind) != mesh.dimension()) continue;
+      for (std::size_t n = 0; n < block.size(); ++n)
+        for (const std::size_t g : block.groups) size[mesh.groups[g].name] += measure(mesh, block, n).size;
+    }
+  }
+};
+
+TEST_F(Gmsh, ReadsWhatGmshWrote) {
+  const std::filesystem::path data = std::filesystem::path(RIVEN_ROOT) / "tests/data/gmsh";
+  for (const char* file : {"plate.msh", "plate-binary.msh"}) {
+    const Mesh mesh = read_gmsh(data / file);
+    const Inventory found(mesh);
+    EXPECT_EQ(found.elements,
+              (std::map<ElementKind, std::size_t>{
+                  {ElementKind::line, 6}, {ElementKind::triangle, 14}, {ElementKind::quadrangle, 11}}));
+    EXPECT_NEAR(found.size.at("foot"), 200, 1e-10);  // files have 16 digits
+    EXPECT_NEAR(found.size.at("arm"), 100, 1e-10);
+    std::set<std::string> names;
+    for (const MeshGroup& group : mesh.groups) names.insert(group.name);
+    EXPECT_EQ(names, (std::set<std::string>{"foot", "arm", "top edge", "13"}));
+  }
+  for (const char* file : {"solid.msh", "solid-binary.msh"}) {
+    const Inventory found(read_gmsh(data / file));
+    EXPECT_EQ(found.elements, (std::map<ElementKind, std::size_t>{{ElementKind::quadrangle, 4},
+                                                                  {ElementKind::tetrahedron, 100},
+                                                                  {ElementKind::hexahedron, 8},
+                                                                  {ElementKind::prism, 28}}));
+    EXPECT_NEAR(found.size.at("glass"), 2000, 1e-9);
+    EXPECT_NEAR(found.size.at("rubber"), 1000, 1e-9);
+  }
 }
 
 // The file ends in a line end, which may be missing.
