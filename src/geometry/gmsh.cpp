@@ -3,19 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <charconv>
-#include <cmath>
-#include <cstring>
-#include <fstream>
-#include <iterator>
+#include <cstdlib>
 #include <map>
 #include <set>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
 
-#include "base/error.hpp"
+#include "geometry/file_cursor.hpp"
 
 namespace riven {
 namespace {
@@ -37,147 +32,9 @@ const std::map<int, GmshType>& gmsh_types() {
   return types;
 }
 
-constexpr const char* kCut = "; is the file cut short?";
-
-/// The bytes of a file, read from front to back, and where in it a mistake is.
-class Cursor {
- public:
-  Cursor(std::string file, std::string bytes) : file_(std::move(file)), bytes_(std::move(bytes)) {}
-
-  void set_binary(bool binary) { binary_ = binary; }
-  [[nodiscard]] bool binary() const { return binary_; }
-  void enter(std::string section) { section_ = std::move(section); }
-
-  [[noreturn]] void fail(std::size_t at, const std::string& message) const {
-    if (binary_) throw InputError(Location{file_}, fmt::format("byte {}{}: {}", at, in_section(), message));
-    const auto end = bytes_.begin() + static_cast<std::ptrdiff_t>(std::min(at, bytes_.size()));
-    throw InputError(Location{file_, 1 + static_cast<int>(std::count(bytes_.begin(), end, '\n'))},
-                     section_.empty() ? message : fmt::format("in ${}: {}", section_, message));
-  }
-  /// At the value that was read last.
-  [[noreturn]] void fail(const std::string& message) const { fail(last_, message); }
-
-  [[nodiscard]] bool at_end() {
-    skip_blanks();
-    return at_ == bytes_.size();
-  }
-
-  /// The next word between blanks.
-  std::string_view word() {
-    skip_blanks();
-    last_ = at_;
-    while (at_ < bytes_.size() && !blank(bytes_[at_])) ++at_;
-    return std::string_view(bytes_).substr(last_, at_ - last_);
-  }
-
-  /// A number written out, also in a binary file.
-  template <class Number>
-  Number written(const char* what) {
-    const std::string_view text = word();
-    if (text.empty()) fail(fmt::format("found the end of the file; expected {}{}", what, kCut));
-    Number value{};
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc{} || end != text.data() + text.size())
-      fail(fmt::format("found \"{}\"; expected {}", shown(text), what));
-    return value;
-  }
-
-  template <class Number>
-  Number number(const char* what) {
-    if (!binary_) return written<Number>(what);
-    last_ = at_;
-    Number value{};
-    if (bytes_.size() - at_ < sizeof value) fail(fmt::format("found the end of the file; expected {}", what));
-    std::memcpy(&value, bytes_.data() + at_, sizeof value);
-    at_ += sizeof value;
-    return value;
-  }
-
-  int integer(const char* what) { return number<std::int32_t>(what); }
-  std::size_t tag(const char* what) { return number<std::uint64_t>(what); }
-
-  /// A number of things to follow, each of which takes a byte at least.
-  std::size_t count(const char* what) { return checked_count(number<std::uint64_t>(what), what); }
-  std::size_t written_count(const char* what) { return checked_count(written<std::uint64_t>(what), what); }
-
-  double real(const char* what) {
-    const auto value = number<double>(what);
-    if (!std::isfinite(value)) fail(fmt::format("found {}; expected {}, a finite number", value, what));
-    return value;
-  }
-
-  /// A text in double quotes.
-  std::string quoted(const char* what) {
-    skip_blanks();
-    last_ = at_;
-    const std::size_t end =
-        at_ < bytes_.size() && bytes_[at_] == '"' ? bytes_.find_first_of("\"\n", at_ + 1) : std::string::npos;
-    if (end == std::string::npos || bytes_[end] == '\n')
-      fail(fmt::format("expected {} in double quotes", what));
-    const std::string text = bytes_.substr(at_ + 1, end - at_ - 1);
-    at_ = end + 1;
-    return text;
-  }
-
-  /// Binary data begin behind the line end.
-  void end_line() {
-    if (at_ < bytes_.size() && bytes_[at_] == '\r') ++at_;
-    if (at_ < bytes_.size() && bytes_[at_] == '\n') ++at_;
-  }
-
-  void expect_word(std::string_view expected) {
-    const std::string_view found = word();
-    if (found != expected)
-      fail(fmt::format("found {}; expected {}{}", described(found), expected, found.empty() ? kCut : ""));
-  }
-
-  /// Goes behind the line that holds `mark`.
-  void skip_behind(const std::string& mark) {
-    const std::size_t found = bytes_.find("\n" + mark, at_ == 0 ? 0 : at_ - 1);
-    if (found == std::string::npos)
-      fail(bytes_.size(), fmt::format("found the end of the file; expected {}{}", mark, kCut));
-    at_ = found + 1 + mark.size();
-  }
-
-  static std::string described(std::string_view word) {
-    return word.empty() ? "the end of the file" : fmt::format("\"{}\"", shown(word));
-  }
-
- private:
-  static bool blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-
-  /// As much of a word as a message can show.
-  static std::string shown(std::string_view word) {
-    constexpr std::size_t kMost = 30;
-    std::string text(word.substr(0, kMost));
-    for (char& c : text)
-      if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7e) c = '?';
-    return word.size() > kMost ? text + "..." : text;
-  }
-
-  void skip_blanks() {
-    while (at_ < bytes_.size() && blank(bytes_[at_])) ++at_;
-  }
-
-  [[nodiscard]] std::string in_section() const {
-    return section_.empty() ? "" : fmt::format(" in ${}", section_);
-  }
-
-  std::size_t checked_count(std::uint64_t value, const char* what) const {
-    if (value > bytes_.size() - at_)
-      fail(fmt::format("found {} as {}, more than the rest of the file can hold; is it cut short?", value,
-                       what));
-    return value;
-  }
-
-  std::string file_, bytes_, section_;
-  bool binary_ = false;
-  std::size_t at_ = 0, last_ = 0;
-};
-
 class GmshReader {
  public:
-  explicit GmshReader(Cursor cursor) : in_(std::move(cursor)) {}
+  explicit GmshReader(const std::filesystem::path& file) : in_(file) {}
 
   Mesh read() {
     do {
@@ -198,15 +55,15 @@ class GmshReader {
     const std::string_view word = in_.word();
     if (!word.starts_with('$') || (seen_.empty() && word != "$MeshFormat" && word != "$Comments"))
       in_.fail(fmt::format(
-          "found {}; expected {}", Cursor::described(word),
+          "found {}; expected {}", FileCursor::described(word),
           seen_.empty() ? "$MeshFormat: a mesh in Gmsh's format MSH 4.1" : "a section, such as $Nodes"));
     const std::string name(word.substr(1));
     const bool known = name == "MeshFormat" || name == "PhysicalNames" || name == "Entities" ||
                        name == "Nodes" || name == "Elements";
     if (known && !seen_.insert(name).second) in_.fail(fmt::format("${} stands here a second time", name));
-    in_.enter(name);
+    in_.enter(fmt::format("${}", name));
     if (!known) return in_.skip_behind("$End" + name);
-    in_.end_line();
+    in_.skip_line();
     if (name == "MeshFormat") read_format();
     if (name == "PhysicalNames") read_names();
     if (name == "Entities") read_entities();
@@ -221,14 +78,14 @@ class GmshReader {
       in_.fail(fmt::format(
           "found version {} of the format MSH; expected 4.1: \"gmsh old.msh -save -format msh41 -o "
           "new.msh\" writes it",
-          Cursor::described(version)));
+          FileCursor::described(version)));
     const int type = in_.written<int>("0 (ASCII) or 1 (binary)");
     if (type != 0 && type != 1) in_.fail(fmt::format("found {}; expected 0 (ASCII) or 1 (binary)", type));
     const int bytes = in_.written<int>("8, the bytes of a count");
     if (bytes != 8) in_.fail(fmt::format("found counts of {} bytes; expected 8", bytes));
     if (type == 0) return;
-    in_.end_line();
-    in_.set_binary(true);
+    in_.skip_line();
+    in_.set_binary();
     const int one = in_.integer("the number 1");
     if (one == 0x01000000)
       in_.fail("the file is big-endian; expected one of a little-endian machine, or ASCII");
@@ -347,7 +204,7 @@ class GmshReader {
     }
   }
 
-  Cursor in_;
+  FileCursor in_;
   Mesh mesh_;
   std::set<std::string> seen_;  // sections
   std::map<Entity, std::string> names_;
@@ -358,11 +215,7 @@ class GmshReader {
 }  // namespace
 
 Mesh read_gmsh(const std::filesystem::path& file) {
-  static_assert(std::endian::native == std::endian::little);
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file))
-    throw InputError(Location{file.string()}, "there is no such file");
-  return GmshReader({file.string(), {std::istreambuf_iterator<char>(in), {}}}).read();
+  return GmshReader(file).read();
 }
 
 }  // namespace riven

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
+#include "geometry/stl.hpp"
 #include "input/mesh_points.hpp"
 
 namespace riven {
@@ -55,7 +57,57 @@ void read(GeometryInput& geometry, const std::optional<double>& thickness, const
   });
 }
 
+std::shared_ptr<const Surface> surface_of(const std::filesystem::path& file, double unit,
+                                          const Check& check) {
+  std::shared_ptr<const Surface> surface;
+  try {
+    Triangles triangles = read_stl(file);
+    for (Point& corner : triangles.corner)
+      for (double& x : corner) x *= unit;
+    surface = std::make_shared<const Surface>(std::move(triangles));
+  } catch (const InputError& wrong) {
+    const std::string what = wrong.what();
+    check.fail("file", what.starts_with(file.string()) ? what : file.string() + ": " + what);
+  }
+  return surface;
+}
+
+void read_surface(GeometryInput& geometry, const Case& c, const Check& check) {
+  SurfaceInput& input = *geometry.surface;
+  input.surface = surface_of(c.file.parent_path() / input.file, length_unit(input.unit, check), check);
+  geometry.dimension = 3;
+  geometry.thickness = 1;
+  const Box& box = input.surface->box();
+  geometry.shape = box;
+  const std::array<bool, 6> filled = input.surface->filled_faces();
+  for (std::size_t face = 0; face < filled.size(); ++face) geometry.open_faces[face] = !filled[face];
+  const double smallest = 2 * *std::min_element(box.half_size.begin(), box.half_size.end());
+  if (geometry.spacing > smallest)
+    check.fail("spacing", fmt::format("the spacing {:.6g} m is larger than the body ({:.6g} m)",
+                                      geometry.spacing, smallest));
+}
+
 }  // namespace
+
+Format describe_surface(GeometryInput& geometry, const Case& c) {
+  if (!geometry.surface) geometry.surface.emplace();
+  SurfaceInput& surface = *geometry.surface;
+  return {.doc =
+              "The inside of a closed surface of triangles in an STL file (ASCII or binary), in three "
+              "dimensions, on a "
+              "cubic lattice that fills the box around it. Cells less than half inside are left out; the "
+              "others count "
+              "with the part that is inside. Where triangles cover a whole side of that box, it is an edge "
+              "for loads and "
+              "probes.",
+          .keys = {Key{"file", kind::Text{&surface.file}, "STL file, relative to the case file."}.required(),
+                   Key{"unit", kind::Text{&surface.unit}, "Of its coordinates, such as `\"mm\"`."}.otherwise(
+                       "\"m\""),
+                   Key{"spacing", kind::Quantity{&geometry.spacing, dimension::length, positive},
+                       "Distance of the points; known as `dx` from here on."}
+                       .required()},
+          .finish = [&geometry, &c](const Check& check) { read_surface(geometry, c, check); }};
+}
 
 Format describe_mesh(GeometryInput& geometry, const Case& c) {
   if (!geometry.points) geometry.points.emplace();

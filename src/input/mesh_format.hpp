@@ -8,4 +8,7 @@ namespace riven {
 /// is.
 Format describe_mesh(GeometryInput& geometry, const Case& c);
 
+/// The same of `surface`.
+Format describe_surface(GeometryInput& geometry, const Case& c);
+
 }  // namespace riven

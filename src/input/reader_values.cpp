@@ -217,11 +217,12 @@ Named Reader::part(const toml::node& node, const Origin& origin) const {
   const std::array<std::string_view, 6> edges{"left", "right", "bottom", "top", "back", "front"};
   const bool is_edge = std::find(edges.begin(), edges.end(), name) != edges.end();
   const auto& points = case_.geometry.points;
-  if (is_edge && points && points->is_mesh() && std::find(known.begin(), known.end(), name) == known.end())
+  const bool from_cad = case_.geometry.surface || (points && points->is_mesh());
+  if (is_edge && from_cad && std::find(known.begin(), known.end(), name) == known.end())
     origin.fail(
         fmt::format("the body has no edge \"{}\": its boundary does not cover all of that side of the box "
                     "around it; known are "
-                    "{}; expected a set, such as group = \"...\" in [set.NAME]",
+                    "{}; expected a set",
                     name, known.empty() ? "none" : listed(known)));
   if (is_edge && points && !points->is_mesh() && !points->has_edges())
     origin.fail(fmt::format(

@@ -217,7 +217,9 @@ Format describe_geometry(Case& c) {
   const auto is_box = [&geometry] { return std::holds_alternative<Box>(geometry.shape); };
   const auto has_points = [&geometry] { return geometry.points && !geometry.points->is_mesh(); };
   const auto has_mesh = [&geometry] { return geometry.points && geometry.points->is_mesh(); };
-  const auto is_lattice_box = [&geometry, is_box] { return is_box() && !geometry.points; };
+  const auto is_lattice_box = [&geometry, is_box] {
+    return is_box() && !geometry.points && !geometry.surface;
+  };
   return {
       .doc =
           "The body: a shape filled with points on a square or cubic lattice, points from a file, or the "
@@ -233,6 +235,10 @@ Format describe_geometry(Case& c) {
                    "Points from a file."},
                Key{"mesh", Table{[&geometry, &c] { return describe_mesh(geometry, c); }, has_mesh},
                    "A mesh from Gmsh."},
+               Key{"surface",
+                   Table{[&geometry, &c] { return describe_surface(geometry, c); },
+                         [&geometry] { return geometry.surface.has_value(); }},
+                   "The inside of a surface from an STL file."},
                Key{"horizon", Quantity{&geometry.horizon, dimension::length, positive},
                    "Radius within which points interact."}
                    .otherwise("\"3 dx\""),
@@ -240,7 +246,7 @@ Format describe_geometry(Case& c) {
                    "How bonds are kept: as bits of the lattice, or in lists, with the same results but "
                    "slower and in more memory. Bonds of points from a file or of a mesh are always listed."}
                    .otherwise("\"lattice\"")},
-      .groups = {{{"box", "disc", "points", "mesh"}}},
+      .groups = {{{"box", "disc", "points", "mesh", "surface"}}},
       .finish = [&geometry](const Check& check) {
         geometry.horizon_at = check.at("horizon");
         if (geometry.points && check.given("bonds") && geometry.bonds != "listed")

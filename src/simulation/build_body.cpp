@@ -139,7 +139,8 @@ Body make_body(const Case& in) {
                                    .spacing = geometry.spacing,
                                    .horizon = geometry.horizon,
                                    .defects = make_defects(in),
-                                   .mirrored = loaded_faces(in)});
+                                   .mirrored = loaded_faces(in),
+                                   .surface = geometry.surface ? geometry.surface->surface.get() : nullptr});
     return geometry.bonds == "listed" ? listed(body) : body;
   } catch (const InputError& error) {
     const std::string what = error.what();

@@ -66,6 +66,8 @@ std::map<std::string, std::string> decisive_values(const Case& input) {
   if (const auto& points = input.geometry.points)
     values[points->is_mesh() ? "geometry.mesh.file" : "geometry.points.file"] =
         fingerprint(points->list->file);
+  if (const auto& surface = input.geometry.surface)
+    values["geometry.surface.file"] = fingerprint(input.file.parent_path() / surface->file);
   return values;
 }
 
