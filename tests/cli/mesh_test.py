@@ -1,27 +1,10 @@
-"""Bodies from meshes: a mesh of squares is the lattice of their centres."""
+"""Bodies from meshes and surfaces: a mesh of squares is the lattice of their centres, the surface of a box its lattice."""
 
 import unittest
 
-from program import BOX, HOLE, PLAIN, ProgramTest, history, plain_force, replaced
+from program import BLOCK, BLOCK_BOX, BOX, HOLE, PLAIN, ProgramTest, box_stl, history, plain_force, replaced, squares
 
 MESH = 'mesh = { file = "sheet.msh", unit = "mm", thickness = "10 mm" }'
-
-
-def squares(side, spacing):
-    """A square mesh around the origin in MSH 4.1 as text, lengths in mm; the physical group "top row" is its upper side."""
-    nodes = [(spacing * (i - side / 2), spacing * (j - side / 2)) for j in range(side + 1) for i in range(side + 1)]
-    corner = lambda i, j: j * (side + 1) + i + 1
-    cells = [(corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)) for j in range(side) for i in range(side)]
-    lines = [(corner(i, side), corner(i + 1, side)) for i in range(side)]
-    rows = lambda first, items: "\n".join(f"{first + n} " + " ".join(map(str, item)) for n, item in enumerate(items))
-    return "\n".join([
-        "$MeshFormat", "4.1 0 8", "$EndMeshFormat",
-        "$PhysicalNames", "1", '1 3 "top row"', "$EndPhysicalNames",
-        "$Entities", "0 1 1 0", "1 0 0 0 0 0 0 1 3 0", "1 0 0 0 0 0 0 0 0", "$EndEntities",
-        "$Nodes", f"1 {len(nodes)} 1 {len(nodes)}", f"2 1 0 {len(nodes)}", *(str(n + 1) for n in range(len(nodes))),
-        *(f"{x} {y} 0" for x, y in nodes), "$EndNodes",
-        "$Elements", f"2 {len(lines) + len(cells)} 1 {len(lines) + len(cells)}",
-        f"1 1 1 {len(lines)}", rows(1, lines), f"2 1 3 {len(cells)}", rows(1 + len(lines), cells), "$EndElements", ""])
 
 
 class Meshes(ProgramTest):
@@ -59,6 +42,29 @@ class Meshes(ProgramTest):
         self.command("run", case, "-o", "out")
         self.write("sheet.msh", squares(10, 20))
         self.assertIn("holds a run of another case", self.command("run", case, "-o", "out", "--resume", expect=2).stderr)
+
+    def test_the_surface_of_a_box_gives_the_box(self):
+        self.write("data/block.stl", box_stl(40, 20, 30))
+        block = self.last(BLOCK, "block")
+        for unit, scale in {"mm": 1, "m": 1e-3}.items():
+            self.write("data/block.stl", box_stl(40 * scale, 20 * scale, 30 * scale))
+            surface = self.last(replaced(BLOCK, BLOCK_BOX, f'surface = {{ file = "data/block.stl", unit = "{unit}", spacing = "5 mm" }}'),
+                                f"surface-{unit}")
+            for ours, theirs in zip(surface, block, strict=True):
+                self.assertAlmostEqual(ours, theirs, delta=1e-9 * abs(block[1]))  # rounding of positions
+        # The resolved case finds its surface wherever it is.
+        (self.top / "surface-m").rename(self.top / "moved")
+        (self.top / "data/block.stl").unlink()
+        self.command("run", "moved/resolved.toml", "-o", "again")
+        for file in ["history.csv", "fields/0000.vtu", "resolved.toml", "tables/geometry-surface.stl"]:
+            self.assertEqual((self.top / "moved" / file).read_bytes(), (self.top / "again" / file).read_bytes(), file)
+
+    def test_check_describes_the_surface(self):
+        self.write("block.stl", box_stl(40, 20, 30))
+        case = self.write("case.toml", replaced(BLOCK, BLOCK_BOX, 'surface = { file = "block.stl", unit = "mm", spacing = "5 mm" }'))
+        said = self.command("check", case).stdout
+        self.assertIn("# surface: 12 triangles in block.stl, around 2.4e-05 m^3\n", said)
+        self.assertRegex(said, r"# body: 192 points of 8 x 4 x 6 cells, spacing 0.005 m, volume 2.4e-05 m\^3")
 
 
 if __name__ == "__main__":

@@ -148,7 +148,7 @@ TEST(Surface, IsRefusedUnlessItIsClosed) {
   box.triangle.pop_back();
   EXPECT_NE(test::message_of<InputError>([&] { Surface{box}; })
                 .find("not closed: 3 of 18 edges are open or have triangles that face different ways, the "
-                      "first from (0, 2, 3) m "
+                      "first from (0, 0, 3) m "
                       "to (0, 2, 3) m; expected"),
             std::string::npos)
       << test::message_of<InputError>([&] { Surface{box}; });
