@@ -8,6 +8,7 @@
 #include "app/commands.hpp"
 #include "base/machine.hpp"
 #include "base/text.hpp"
+#include "geometry/surface.hpp"
 #include "input/case_reader.hpp"
 #include "input/case_writer.hpp"
 #include "input/material_format.hpp"
@@ -84,8 +85,11 @@ void print_model(const Simulation& simulation) {
   double volume = 0;
   for (const std::size_t i : body.points) volume += body.volume[i];
   if (const auto& points = simulation.input.geometry.points)
-    fmt::print("# points: {} in {}, filling {}\n", points->list->position.size(), points->list->file,
-               extent_text(body));
+    fmt::print("# {}: {} in {}, filling {}\n", points->is_mesh() ? "elements" : "points",
+               points->list->position.size(), points->list->file, extent_text(body));
+  if (const auto& surface = simulation.input.geometry.surface)
+    fmt::print("# surface: {} triangles in {}, around {:.6g} m^3\n", surface->surface->size(), surface->file,
+               surface->surface->volume());
   const LatticeBonds* on = body.on_lattice();
   const std::string cells = on == nullptr
                                 ? std::string("with listed bonds, mean spacing")

@@ -72,7 +72,7 @@ class CellFiller {
     lattice_.for_each_cell([&](const Cell& cell, std::size_t i) {
       if (!lattice_.inside(cell)) return;
       const Point x = lattice_.position(cell);
-      const double fraction = material_fraction(x);
+      const double fraction = material_fraction(cell, x);
       if (const auto inclusion = rules.rigid_inclusion(x)) {
         body_.kind[i] = PointKind::rigid;
         body_.rigid_points[*inclusion].push_back(i);
@@ -87,8 +87,12 @@ class CellFiller {
   }
 
  private:
-  [[nodiscard]] double material_fraction(const Point& x) const {
-    double fraction = covered_fraction(in_.shape, x, in_.spacing, in_.dimension);
+  double material_fraction(const Cell& cell, const Point& x) {
+    // A surface is asked once for each row.
+    if (in_.surface != nullptr && cell[0] == 0)
+      row_ = in_.surface->covered_fractions(x, in_.spacing, lattice_.cells()[0]);
+    double fraction = in_.surface != nullptr ? row_[static_cast<std::size_t>(cell[0])]
+                                             : covered_fraction(in_.shape, x, in_.spacing, in_.dimension);
     for (const auto* shapes : {&in_.defects.holes, &in_.defects.inclusions})
       for (const Shape& shape : *shapes) fraction -= covered_fraction(shape, x, in_.spacing, in_.dimension);
     return fraction;
@@ -119,6 +123,7 @@ class CellFiller {
   const LatticeBodyInput& in_;
   const Lattice& lattice_;
   Body& body_;
+  std::vector<double> row_;  // parts of the cells of a row that a surface covers
 };
 
 /// Reflections that bring a ghost cell into the body, or nothing if a face in between has no ghosts.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "body/body.hpp"
+#include "geometry/surface.hpp"
 
 namespace riven {
 
@@ -12,7 +13,8 @@ struct LatticeBodyInput {
   double spacing = 0;
   double horizon = 0;
   Defects defects;
-  Faces mirrored;  // faces that get layers of ghost points
+  Faces mirrored;                    // faces that get layers of ghost points
+  const Surface* surface = nullptr;  // what is filled, in three dimensions; the shape is its box
 };
 
 /// Points at the centres of a uniform lattice's cells, padded as `Lattice` says. Rules for cut cells, bonds

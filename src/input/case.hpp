@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -25,12 +26,22 @@ struct TableInput {  // [table.NAME]: a function that formulas may call
   Location at;
 };
 
-struct PointsInput {               // [geometry] points = {...}
-  std::string file;                // CSV, relative to the case file
-  std::vector<double> size, from;  // m; of the box that the points fill, empty if not given
+struct PointsInput {               // [geometry] points = {...}, or mesh = {...}
+  std::string file;                // CSV or MSH, relative to the case file
+  std::string unit;                // of a mesh's coordinates; empty for points
+  std::vector<double> size, from;  // m; of the box that points fill, empty if not given
   std::shared_ptr<const PointList> list;
 
   [[nodiscard]] bool has_edges() const { return !size.empty(); }
+  [[nodiscard]] bool is_mesh() const { return !unit.empty(); }
+};
+
+class Surface;
+
+struct SurfaceInput {  // [geometry] surface = {...}
+  std::string file;    // STL, relative to the case file
+  std::string unit;    // of its coordinates
+  std::shared_ptr<const Surface> surface;
 };
 
 struct GeometryInput {   // [geometry]
@@ -38,8 +49,10 @@ struct GeometryInput {   // [geometry]
   int dimension = 2;     // number of entries of the box's size; 2 for a disc with a thickness
   double thickness = 1;  // m (2D), or m^2 (1D: key `area`)
   double spacing = 0;    // m; of listed points the mean
-  std::optional<PointsInput> points;  // instead of a lattice
-  std::string bonds = "lattice";      // or "listed", as those of points
+  std::optional<PointsInput> points;    // instead of a lattice; the shape is the box around them
+  std::optional<SurfaceInput> surface;  // what the lattice fills; the shape is the box around it
+  std::array<bool, 6> open_faces{};     // where the body does not end, or nobody knows: these are no edges
+  std::string bonds = "lattice";        // or "listed", as those of points
   Location at;
   double horizon = 0;  // m
   Location horizon_at;
@@ -61,8 +74,9 @@ struct InclusionInput {  // [[inclusion]]: rigid and bonded to the body
   Location at;
 };
 
-struct SetInput {  // [set.NAME]: exactly one of where and a shape
+struct SetInput {  // [set.NAME]: exactly one of where, group and a shape
   std::string name;
+  std::string group;  // of the mesh
   std::optional<Expression> where;
   std::optional<Shape> shape;
   Location at;

@@ -114,15 +114,30 @@ Format describe(InclusionInput& inclusion, const Case& c) {
           }};
 }
 
+void check_group(const std::string& group, const GeometryInput& geometry, const Check& check) {
+  if (!geometry.points || !geometry.points->is_mesh())
+    check.fail("group", "belongs to bodies from a mesh (geometry.mesh); expected where or a shape");
+  std::vector<std::string> names;
+  for (const PointGroup& known : geometry.points->list->groups) names.push_back(known.name);
+  if (std::find(names.begin(), names.end(), group) == names.end())
+    check.fail("group", fmt::format("the mesh has no physical group \"{}\"; it has {}{}", group,
+                                    names.empty() ? "none" : listed(names), did_you_mean(group, names)));
+}
+
 Format describe(SetInput& set, const Case& c) {
   std::vector<Key> keys = {
-      Key{"where", kind::Condition{&set.where}, "A formula of x, y, z that is true in the set."}};
+      Key{"where", kind::Condition{&set.where}, "A formula of x, y, z that is true in the set."},
+      Key{"group", Text{&set.group},
+          "A physical group of the mesh, by its name: the points of its elements, or, of a group of edges or "
+          "faces, "
+          "those of the elements that touch it."}};
   for (Key& key : shape_keys(set.shape)) keys.push_back(std::move(key));
   return {.doc = "A named set of points, for loads and probes.",
           .at = &set.at,
           .keys = std::move(keys),
-          .groups = {{{"where", "disc", "box", "ball"}}},
+          .groups = {{{"where", "group", "disc", "box", "ball"}}},
           .finish = [&set, &c](const Check& check) {
+            if (!set.group.empty()) check_group(set.group, c.geometry, check);
             const std::vector<std::string> edges{"left", "right", "bottom", "top", "back", "front"};
             if (std::find(edges.begin(), edges.end(), set.name) != edges.end())
               check.fail("", fmt::format("\"{}\" is the name of an edge; expected another name than {}",
@@ -419,8 +434,9 @@ bool always() {
 std::vector<std::string> edge_names(const Case& of) {
   std::vector<std::string> names{"left", "right", "bottom", "top", "back", "front"};
   if (!std::holds_alternative<Box>(of.geometry.shape)) return {};
-  if (of.geometry.points && !of.geometry.points->has_edges()) return {};
   names.resize(2 * static_cast<std::size_t>(of.geometry.dimension));
+  for (std::size_t face = names.size(); face-- > 0;)
+    if (of.geometry.open_faces[face]) names.erase(names.begin() + static_cast<std::ptrdiff_t>(face));
   return names;
 }
 

@@ -73,6 +73,14 @@ double PointList::spacing(double thickness) const {
   return std::pow(sum / static_cast<double>(volume.size()) / thickness, 1.0 / dimension);
 }
 
+std::string PointList::label(std::size_t point) const {
+  return of_mesh() ? fmt::format("element {}", element[point]) : fmt::format("line {}", line[point]);
+}
+
+Location PointList::at(std::size_t point) const {
+  return of_mesh() ? Location{fmt::format("{}, {}", file, label(point))} : Location{file, line[point]};
+}
+
 PointList read_points(const std::filesystem::path& file, double thickness) {
   const CsvTable csv = CsvTable::read(file);
   PointList points;
@@ -132,8 +140,8 @@ void check_apart(const PointList& points, double spacing) {
     const std::size_t first = cubes.within(points.position[n], kSamePlace * spacing).front();
     if (first != n)
       throw InputError(points.at(n),
-                       fmt::format("the point at {} stands in line {} already; expected each place once",
-                                   place_text(points, n), points.line[first]));
+                       fmt::format("the point at {} stands in {} already; expected each place once",
+                                   place_text(points, n), points.label(first)));
   }
 }
 

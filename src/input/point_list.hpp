@@ -8,17 +8,29 @@
 
 namespace riven {
 
-/// Material points that a CSV file lists.
+/// Points of a list under a name.
+struct PointGroup {
+  std::string name;
+  std::vector<std::size_t> points;  // ascending
+};
+
+/// Material points that a file lists: the rows of a CSV file, or the elements of a mesh.
 struct PointList {
   std::string file;
   int dimension = 2;
-  std::vector<Point> position;  // m
-  std::vector<double> volume;   // m^3, one per position
-  std::vector<int> line;        // of the file, one per position
+  std::vector<Point> position;       // m
+  std::vector<double> volume;        // m^3, one per position
+  std::vector<int> line;             // of a CSV file, one per position
+  std::vector<std::size_t> element;  // of a mesh: its number in the file, one per position
+  std::vector<PointGroup> groups;    // of a mesh
 
   /// Mean spacing (m): the edge of a square or cube that holds the mean volume.
   [[nodiscard]] double spacing(double thickness) const;
-  [[nodiscard]] Location at(std::size_t point) const { return {file, line[point]}; }
+  /// "line 7" or "element 7".
+  [[nodiscard]] std::string label(std::size_t point) const;
+  /// For messages about a point: the file and its line, or its element.
+  [[nodiscard]] Location at(std::size_t point) const;
+  [[nodiscard]] bool of_mesh() const { return !element.empty(); }
 };
 
 /// Reads the columns x, y, in three dimensions z, and volume, or in two dimensions area instead, which is

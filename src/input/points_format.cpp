@@ -82,6 +82,7 @@ void read(GeometryInput& geometry, const std::optional<double>& thickness, const
   geometry.dimension = points.list->dimension;
   geometry.thickness = thickness.value_or(1);
   geometry.spacing = points.list->spacing(geometry.thickness);
+  geometry.open_faces.fill(!points.has_edges());
   const Box box = points.has_edges() ? given_box(points, check) : box_around(*points.list, geometry.spacing);
   geometry.shape = box;
   in_file([&] {

@@ -217,8 +217,16 @@ Named Reader::part(const toml::node& node, const Origin& origin) const {
   const std::string& name = string_of(node, origin, "the name of an edge or a set");
   const std::vector<std::string> known = part_names(case_);
   const std::array<std::string_view, 6> edges{"left", "right", "bottom", "top", "back", "front"};
-  if (case_.geometry.points && !case_.geometry.points->has_edges() &&
-      std::find(edges.begin(), edges.end(), name) != edges.end())
+  const bool is_edge = std::find(edges.begin(), edges.end(), name) != edges.end();
+  const auto& points = case_.geometry.points;
+  const bool from_cad = case_.geometry.surface || (points && points->is_mesh());
+  if (is_edge && from_cad && std::find(known.begin(), known.end(), name) == known.end())
+    origin.fail(
+        fmt::format("the body has no edge \"{}\": its boundary does not cover all of that side of the box "
+                    "around it; known are "
+                    "{}; expected a set",
+                    name, known.empty() ? "none" : listed(known)));
+  if (is_edge && points && !points->is_mesh() && !points->has_edges())
     origin.fail(fmt::format(
         "points have no edge \"{}\" as long as nobody says where the body ends; expected box = {{ size = "
         "[...], from = [...] }} in geometry.points, or a set",

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "input/mesh_format.hpp"
 #include "input/points_format.hpp"
 
 namespace riven {
@@ -214,42 +215,51 @@ std::vector<Key> shape_keys(std::optional<Shape>& shape) {
 Format describe_geometry(Case& c) {
   GeometryInput& geometry = c.geometry;
   const auto is_box = [&geometry] { return std::holds_alternative<Box>(geometry.shape); };
-  const auto has_points = [&geometry] { return geometry.points.has_value(); };
-  return {.doc =
-              "The body: a shape filled with points on a square or cubic lattice, or points from a file; and "
-              "the horizon.",
-          .at = &geometry.at,
-          .keys = {Key{"box",
-                       Table{[&geometry] { return describe_lattice_box(geometry); },
-                             [=] { return is_box() && !has_points(); }},
-                       "A bar, rectangle or box."},
-                   Key{"disc",
-                       Table{[&geometry] { return describe_lattice_disc(geometry); },
-                             [=] { return !is_box() && !has_points(); }},
-                       "A disc."},
-                   Key{"points", Table{[&geometry, &c] { return describe_points(geometry, c); }, has_points},
-                       "Points from a file."},
-                   Key{"horizon", Quantity{&geometry.horizon, dimension::length, positive},
-                       "Radius within which points interact."}
-                       .otherwise("\"3 dx\""),
-                   Key{"bonds", Text{&geometry.bonds, {"lattice", "listed"}},
-                       "How bonds are kept: as bits of the lattice, or in lists, with the same results but "
-                       "slower and in more memory. Bonds of points from a file are always listed."}
-                       .otherwise("\"lattice\"")},
-          .groups = {{{"box", "disc", "points"}}},
-          .finish = [&geometry](const Check& check) {
-            geometry.horizon_at = check.at("horizon");
-            if (geometry.points && check.given("bonds") && geometry.bonds != "listed")
-              check.fail("bonds", "points from a file are on no lattice; expected \"listed\", or nothing");
-            if (geometry.points) geometry.bonds = "listed";
-            // Rounding must not refuse "1 dx".
-            if (geometry.horizon < geometry.spacing * (1 - 1e-9))
-              check.fail(
-                  "horizon",
-                  fmt::format(
-                      "{:.6g} m is below the spacing of {:.6g} m; expected a few spacings, such as \"3 dx\"",
-                      geometry.horizon, geometry.spacing));
-          }};
+  const auto has_points = [&geometry] { return geometry.points && !geometry.points->is_mesh(); };
+  const auto has_mesh = [&geometry] { return geometry.points && geometry.points->is_mesh(); };
+  const auto is_lattice_box = [&geometry, is_box] {
+    return is_box() && !geometry.points && !geometry.surface;
+  };
+  return {
+      .doc =
+          "The body: a shape filled with points on a square or cubic lattice, points from a file, or the "
+          "elements "
+          "of a mesh; and the horizon.",
+      .at = &geometry.at,
+      .keys = {Key{"box", Table{[&geometry] { return describe_lattice_box(geometry); }, is_lattice_box},
+                   "A bar, rectangle or box."},
+               Key{"disc",
+                   Table{[&geometry] { return describe_lattice_disc(geometry); }, [=] { return !is_box(); }},
+                   "A disc."},
+               Key{"points", Table{[&geometry, &c] { return describe_points(geometry, c); }, has_points},
+                   "Points from a file."},
+               Key{"mesh", Table{[&geometry, &c] { return describe_mesh(geometry, c); }, has_mesh},
+                   "A mesh from Gmsh."},
+               Key{"surface",
+                   Table{[&geometry, &c] { return describe_surface(geometry, c); },
+                         [&geometry] { return geometry.surface.has_value(); }},
+                   "The inside of a surface from an STL file."},
+               Key{"horizon", Quantity{&geometry.horizon, dimension::length, positive},
+                   "Radius within which points interact."}
+                   .otherwise("\"3 dx\""),
+               Key{"bonds", Text{&geometry.bonds, {"lattice", "listed"}},
+                   "How bonds are kept: as bits of the lattice, or in lists, with the same results but "
+                   "slower and in more memory. Bonds of points from a file or of a mesh are always listed."}
+                   .otherwise("\"lattice\"")},
+      .groups = {{{"box", "disc", "points", "mesh", "surface"}}},
+      .finish = [&geometry](const Check& check) {
+        geometry.horizon_at = check.at("horizon");
+        if (geometry.points && check.given("bonds") && geometry.bonds != "listed")
+          check.fail("bonds", "points from a file are on no lattice; expected \"listed\", or nothing");
+        if (geometry.points) geometry.bonds = "listed";
+        // Rounding must not refuse "1 dx".
+        if (geometry.horizon < geometry.spacing * (1 - 1e-9))
+          check.fail(
+              "horizon",
+              fmt::format(
+                  "{:.6g} m is below the spacing of {:.6g} m; expected a few spacings, such as \"3 dx\"",
+                  geometry.horizon, geometry.spacing));
+      }};
 }
 
 }  // namespace riven

@@ -31,7 +31,7 @@ Simulation build_simulation(const Case& input) {
   simulation.input = input;
   simulation.parameter = input.solver.method == "verlet" ? Parameter::time : Parameter::stretch;
   Body body = make_body(input);
-  for (const SetInput& set : input.sets) simulation.sets.push_back(make_set(set, body));
+  for (const SetInput& set : input.sets) simulation.sets.push_back(make_set(set, input, body));
   auto model = make_model(input, std::move(body));
   simulation.body = &model->body();
   simulation.constraints =

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -118,6 +119,14 @@ Body make_points_body(const Case& in) {
   return make_listed_body(listed);
 }
 
+/// Points of the mesh's list, as a listed body stores them. The input layer has checked that the group
+/// exists.
+const std::vector<std::size_t>& group_points(const std::string& name, const Case& of) {
+  const auto& groups = of.geometry.points->list->groups;
+  return std::find_if(groups.begin(), groups.end(), [&](const PointGroup& g) { return g.name == name; })
+      ->points;
+}
+
 }  // namespace
 
 Body make_body(const Case& in) {
@@ -130,7 +139,8 @@ Body make_body(const Case& in) {
                                    .spacing = geometry.spacing,
                                    .horizon = geometry.horizon,
                                    .defects = make_defects(in),
-                                   .mirrored = loaded_faces(in)});
+                                   .mirrored = loaded_faces(in),
+                                   .surface = geometry.surface ? geometry.surface->surface.get() : nullptr});
     return geometry.bonds == "listed" ? listed(body) : body;
   } catch (const InputError& error) {
     const std::string what = error.what();
@@ -139,13 +149,15 @@ Body make_body(const Case& in) {
   }
 }
 
-PointSet make_set(const SetInput& in, const Body& body) {
+PointSet make_set(const SetInput& in, const Case& of, const Body& body) {
   PointSet set{in.name, {}};
   const double touch = 1e-9 * body.spacing;
+  const std::vector<std::size_t>* group = in.group.empty() ? nullptr : &group_points(in.group, of);
   for (std::size_t n = 0; n < body.points.size(); ++n) {
     const Point x = body.position(body.points[n]);
-    const bool inside =
-        in.where ? (*in.where)(Variables{.position = x}) != 0 : signed_distance(*in.shape, x) <= touch;
+    const bool inside = group != nullptr ? std::binary_search(group->begin(), group->end(), body.points[n])
+                        : in.where       ? (*in.where)(Variables{.position = x}) != 0
+                                         : signed_distance(*in.shape, x) <= touch;
     if (inside) set.points.push_back(n);
   }
   if (set.points.empty())

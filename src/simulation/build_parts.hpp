@@ -14,7 +14,7 @@ namespace riven {
 Body make_body(const Case& in);
 
 /// The points of a set; an empty one is an error.
-PointSet make_set(const SetInput& in, const Body& body);
+PointSet make_set(const SetInput& in, const Case& of, const Body& body);
 
 std::unique_ptr<PointModel> make_model(const Case& in, Body body);
 

@@ -263,9 +263,10 @@ void warn_of_families(const Simulation& simulation, std::vector<std::string>& li
 void check_families(const Simulation& simulation) {
   const auto [mean, expected] = families(simulation);
   if (simulation.input.geometry.points && mean < 0.05 * expected)
-    throw InputError(
-        simulation.input.geometry.at,
-        fmt::format("geometry.points: {}; is the unit of the volumes right?", families_text(simulation)));
+    throw InputError(simulation.input.geometry.at, fmt::format("geometry: {}; {}", families_text(simulation),
+                                                               simulation.input.geometry.points->is_mesh()
+                                                                   ? "expected elements of about one size"
+                                                                   : "is the unit of the volumes right?"));
 }
 
 /// Points that nothing holds.

@@ -63,7 +63,11 @@ std::map<std::string, std::string> decisive_values(const Case& input) {
   });
   for (const TableInput& table : input.tables)
     values["table." + table.name + ".file"] = fingerprint(table.function->file());
-  if (input.geometry.points) values["geometry.points.file"] = fingerprint(input.geometry.points->list->file);
+  if (const auto& points = input.geometry.points)
+    values[points->is_mesh() ? "geometry.mesh.file" : "geometry.points.file"] =
+        fingerprint(points->list->file);
+  if (const auto& surface = input.geometry.surface)
+    values["geometry.surface.file"] = fingerprint(input.file.parent_path() / surface->file);
   return values;
 }
 

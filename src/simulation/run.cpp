@@ -80,14 +80,22 @@ RunStatus march_on(const Simulation& simulation, Recorder& recorder, Progress& s
   return RunStatus::failed;
 }
 
-/// The result keeps the tables and points that it came from: it runs again wherever it is moved, whatever
-/// becomes of the files.
+/// The result keeps the tables, points, mesh and surface that it came from: it runs again wherever it is
+/// moved, whatever becomes of the files.
 void keep_tables(Case& input, const std::filesystem::path& folder) {
-  if (!input.tables.empty() || input.geometry.points) std::filesystem::create_directories(folder / "tables");
+  if (!input.tables.empty() || input.geometry.points || input.geometry.surface)
+    std::filesystem::create_directories(folder / "tables");
+  if (auto& surface = input.geometry.surface) {
+    const std::string copy = "tables/geometry-surface.stl";
+    std::filesystem::copy_file(input.file.parent_path() / surface->file, folder / copy);
+    surface->file = copy;
+  }
   if (input.geometry.points) {
     // No table has this name: formulas could not call it.
-    std::filesystem::copy_file(input.geometry.points->list->file, folder / "tables/geometry-points.csv");
-    input.geometry.points->file = "tables/geometry-points.csv";
+    const std::string copy =
+        input.geometry.points->is_mesh() ? "tables/geometry-mesh.msh" : "tables/geometry-points.csv";
+    std::filesystem::copy_file(input.geometry.points->list->file, folder / copy);
+    input.geometry.points->file = copy;
   }
   for (TableInput& table : input.tables) {
     const std::string copy = fmt::format("tables/{}.csv", table.name);

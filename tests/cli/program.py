@@ -122,12 +122,67 @@ kind = "displacement"
 at = ["-19 mm", "19 mm"]
 """
 
+BLOCK_BOX = 'box = { size = ["40 mm", "20 mm", "30 mm"], from = [0, 0, 0], spacing = "5 mm" }'
+BLOCK = f"""title = "Block"
+
+[geometry]
+{BLOCK_BOX}
+horizon = "3 dx"
+
+[model]
+kind = "lps"
+
+[material.glass]
+law = "linear-elastic"
+youngs_modulus = "72 GPa"
+poissons_ratio = 0.22
+
+[[load]]
+on = ["left", "right"]
+displacement = ["(stretch - 1)*x", "free", "free"]
+
+[solver]
+method = "dynamic-relaxation"
+stretch = [1.0001]
+increment = 0.0001
+
+[[probe]]
+name = "force"
+kind = "reaction"
+on = "right"
+"""
+
 
 def lattice_csv(side, spacing, thickness=10):
     """Points of a square lattice around the origin as CSV text; lengths in mm."""
     middle, volume = (side - 1) / 2, spacing**2 * thickness
     return "x [mm],y [mm],volume [mm^3]\n" + "".join(
         f"{spacing * (i - middle)},{spacing * (j - middle)},{volume}\n" for j in range(side) for i in range(side))
+
+
+def squares(side, spacing):
+    """A square mesh around the origin in MSH 4.1 as text, lengths in mm; the physical group "top row" is its upper side."""
+    nodes = [(spacing * (i - side / 2), spacing * (j - side / 2)) for j in range(side + 1) for i in range(side + 1)]
+    corner = lambda i, j: j * (side + 1) + i + 1
+    cells = [(corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)) for j in range(side) for i in range(side)]
+    lines = [(corner(i, side), corner(i + 1, side)) for i in range(side)]
+    rows = lambda first, items: "\n".join(f"{first + n} " + " ".join(map(str, item)) for n, item in enumerate(items))
+    return "\n".join([
+        "$MeshFormat", "4.1 0 8", "$EndMeshFormat",
+        "$PhysicalNames", "1", '1 3 "top row"', "$EndPhysicalNames",
+        "$Entities", "0 1 1 0", "1 0 0 0 0 0 0 1 3 0", "1 0 0 0 0 0 0 0 0", "$EndEntities",
+        "$Nodes", f"1 {len(nodes)} 1 {len(nodes)}", f"2 1 0 {len(nodes)}", *(str(n + 1) for n in range(len(nodes))),
+        *(f"{x} {y} 0" for x, y in nodes), "$EndNodes",
+        "$Elements", f"2 {len(lines) + len(cells)} 1 {len(lines) + len(cells)}",
+        f"1 1 1 {len(lines)}", rows(1, lines), f"2 1 3 {len(cells)}", rows(1 + len(lines), cells), "$EndElements", ""])
+
+
+def box_stl(x, y, z):
+    """The surface of a box with a corner at the origin, as text."""
+    at = lambda n: f"vertex {n % 2 * x} {n // 2 % 2 * y} {n // 4 * z}\n"
+    sides = ["046", "062", "137", "175", "015", "054", "267", "273", "023", "031", "457", "476"]
+    return "solid\n" + "".join("facet normal 0 0 0\nouter loop\n" + "".join(at(int(c)) for c in side) + "endloop\nendfacet\n"
+                               for side in sides) + "endsolid\n"
 
 
 def plain_force(stretch):

@@ -6,7 +6,7 @@ import random
 import re
 import unittest
 
-from program import BOX, HOLE, MOVING, PLAIN, POINTS, ProgramTest, lattice_csv, replaced
+from program import BLOCK, BLOCK_BOX, BOX, HOLE, MOVING, PLAIN, POINTS, ProgramTest, box_stl, lattice_csv, replaced, squares
 
 EXPECT = """
 [[expect]]
@@ -39,6 +39,8 @@ TABLE = replaced(replaced(MOVING, "[geometry]", '[table.pull]\nfile = "pull.csv"
 STATIC_TABLE = replaced(replaced(PLAIN, "[geometry]", '[table.pull]\nfile = "steps.csv"\n\n[geometry]'),
                         '"(stretch - 1)*x"', '"pull(stretch) * x"')
 CLOUD = replaced(PLAIN, BOX, POINTS)
+MESH = replaced(PLAIN, BOX, 'mesh = { file = "sheet.msh", unit = "mm", thickness = "10 mm" }')
+SOLID = replaced(BLOCK, BLOCK_BOX, 'surface = { file = "block.stl", unit = "mm", spacing = "5 mm" }')
 
 FREE = replaced(replaced(CLOUD, ', box = { size = ["0.2 m", "0.2 m"] }', ""), 'on = ["left", "right", "bottom", "top"]', 'on = "all"')
 FREE = replaced(FREE, 'on = "right"', 'on = "all"') + SET.format(name="all", where="x > -1 m")
@@ -201,6 +203,20 @@ MISTAKES = [
     ("points without a thickness", CLOUD, ', thickness = "10 mm"', "", "points =", "thickness: missing"),
     ("points and a box", CLOUD, POINTS, POINTS + "\n" + BOX, "points = {", "given together with"),
     ("bonds of points on a lattice", CLOUD, POINTS, POINTS + '\nbonds = "lattice"', "bonds =", 'expected "listed"'),
+    ("no file of a mesh", MESH, "sheet.msh", "shet.msh", "mesh =", "shet.msh: there is no such file"),
+    ("points for a mesh", MESH, "sheet.msh", "sheet.csv", "mesh =", 'sheet.csv:1: found "x"; expected $MeshFormat'),
+    ("an older mesh", MESH, "sheet.msh", "older.msh", "mesh =", 'older.msh:2: in $MeshFormat: found version "2.2" of the format MSH; expected 4.1'),
+    ("a mesh without a thickness", MESH, ', thickness = "10 mm"', "", "mesh =", "thickness: missing"),
+    ("a mesh in no unit", MESH, 'unit = "mm"', 'unit = "mn"', "mesh =", 'unit: found "mn"; expected a unit of length'),
+    ("an unknown group", MESH + '\n[set.top_row]\ngroup = "top row"\n', '"top row"', '"toprow"', "group =",
+     'has no physical group "toprow"; it has top row; did you mean "top row"?'),
+    ("a group without a mesh", PLAIN + SET.format(name="s", where="x > 0"), 'where = "x > 0"', 'group = "s"', "group =", "belongs to bodies from a mesh"),
+    ("an edge that the mesh has not", MESH, '"left", "right"', '"left", "back"', "on = [", 'the body has no edge "back"'),
+    ("no file of a surface", SOLID, "block.stl", "blok.stl", "surface =", "blok.stl: there is no such file"),
+    ("an open surface", SOLID, "block.stl", "open.stl", "surface =", "open.stl: the surface is not closed: 3 of 18 edges"),
+    ("a surface without spacing", SOLID, ', spacing = "5 mm"', "", "surface =", "spacing: missing"),
+    ("a surface below the spacing", SOLID, 'unit = "mm"', 'unit = "um"', "surface =", "is larger than the body"),
+    ("a surface in no unit", SOLID, 'unit = "mm"', 'unit = "MPa"', "surface =", 'unit: found "MPa"; expected a unit of length'),
     ("unknown bonds", PLAIN, BOX, BOX + '\nbonds = "list"', "bonds =", 'did you mean "listed"?'),
     ("too many states", MOVING, 'every = "2 ms"', 'every = "1e-30 s"', "every =", "gives 4e+27 output states; expected 1e+06 at most"),
     ("too many rows", MOVING, 'history_every = "1 ms"', 'history_every = "1e-30 s"', "history_every =", "rows of the history"),
@@ -257,6 +273,10 @@ class WrongInput(ProgramTest):
         self.write("unit.csv", "t [sec],u [mm]\n0,0\n1,1\n")
         self.write("twins.csv", "t [ms],t [s],u [mm]\n0,0,0\n4,4,1\n")
         self.write("semicolons.csv", "t [ms];u [mm]\n0;0\n4;1\n")
+        self.write("sheet.msh", squares(20, 10))
+        self.write("older.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n")
+        self.write("block.stl", box_stl(40, 20, 30))
+        self.write("open.stl", re.sub("facet.*?endfacet\n", "", box_stl(40, 20, 30), count=1, flags=re.DOTALL))
         self.write("large.csv", lattice_csv(20, 10).replace("mm^3", "cm^3"))
         self.write("small.csv", lattice_csv(20, 10).replace("1000.0", "0.001").replace("1000\n", "0.001\n"))
 
@@ -282,7 +302,7 @@ class WrongInput(ProgramTest):
 
     def test_the_cases_are_right_without_the_mistake(self):
         for name, text in {"plain": PLAIN + EXPECT, "hole": HOLE + FIELD, "moving": MOVING, "table": TABLE,
-                           "steps": STATIC_TABLE}.items():
+                           "steps": STATIC_TABLE, "mesh": MESH, "solid": SOLID}.items():
             self.command("check", self.write(f"{name}.toml", text))
 
     def test_three_dimensions_have_no_membrane(self):

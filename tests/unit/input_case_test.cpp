@@ -151,7 +151,9 @@ INSTANTIATE_TEST_SUITE_P(
     Names, WrongInput,
     testing::Values(
         Wrong{"horizon =", "horizn =", "5:1",
-              "geometry.horizn: unknown key; valid here are box, disc, points, horizon, bonds; did you mean "
+              "geometry.horizn: unknown key; valid here are box, disc, points, mesh, surface, horizon, "
+              "bonds; did you "
+              "mean "
               "\"horizon\"?"},
         Wrong{"stabilisation =", "stabilization =", "15", "did you mean \"stabilisation\"?"},
         Wrong{"stabilisation =", "until =", "15:1", "\"until\" belongs in [solver]"},
