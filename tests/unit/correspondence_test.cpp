@@ -312,7 +312,7 @@ Constraints held(const Correspondence& model, const Faces& faces, bool all) {
 TEST(Correspondence, BoundsTheStiffnessTightly) {
   Random random(8);
   double at_rest = 1, anywhere = 1;
-  for (int n = 0; n < 40; ++n) {
+  for (int n = 0; n < 24; ++n) {
     const int dimension = n % 4 == 3 ? 3 : 2;
     LatticeBodyInput in = dimension == 2 ? cells_of({random.integer(8, 12), random.integer(7, 11)})
                                          : cells_of({6, random.integer(4, 6), 5}, 2);
@@ -331,9 +331,6 @@ TEST(Correspondence, BoundsTheStiffnessTightly) {
     EXPECT_LE(share, 1) << n;
     anywhere = std::min(anywhere, share);
     if (n % 3 == 0) at_rest = std::min(at_rest, share);
-    std::printf("%d D%d rest %d kind %d law %s factor %.3f: step %.3f of the limit\n", n, dimension,
-                n % 3 == 0, static_cast<int>(settings.stabilisation), settings.material.name.c_str(),
-                settings.factor, std::sqrt(share));
   }
   // The stable step is the root of these shares of its limit. Measured: 0.91 at rest (with the energy's
   // factor at 1 also there), 0.62 where noise has strained bonds by a tenth: there one point's stiffness
@@ -344,7 +341,7 @@ TEST(Correspondence, BoundsTheStiffnessTightly) {
 
 TEST(Correspondence, HasTheSameBitsOnAnyNumberOfThreads) {
   const int before = omp_get_max_threads();
-  const Body body = make_lattice_body(cells_of({9, 8, 7}, 2));
+  const Body body = make_lattice_body(cells_of({6, 6, 5}, 2));
   for (const Stabilisation stabilisation : kStabilisations)
     for (const bool lists : {false, true}) {
       std::vector<std::vector<double>> results;
