@@ -281,22 +281,26 @@ bool Correspondence::sweep_bonds(const Law& law, std::span<const double> u, std:
   return sound;
 }
 
-template <class Law>
-bool Correspondence::force_by(const Law& law, std::span<const double> u, std::span<double> force) {
+/// Shows the kernels a state.
+void Correspondence::look_at(std::span<const double> u) {
   const std::size_t size = body().size();
   const auto dimension = static_cast<std::size_t>(body().dimension);
-  if (settings_.stabilisation == Stabilisation::bond_associated)
-    return in_dimension([&]<int D>(std::integral_constant<int, D>) { return sweep_bonds<D>(law, u, force); });
-  for (std::size_t d = 0; d < dimension; ++d) {
-    lattice_.u[d] = u.data() + d * size;
-    lattice_.out[d] = list_.out[d] = force.data() + d * size;
-  }
-  if (body().on_lattice() != nullptr) return sweep(lattice_, kernels_.lattice, law);
+  for (std::size_t d = 0; d < dimension; ++d) lattice_.u[d] = u.data() + d * size;
   parallel_pieces(list_.points.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t d = 0; d < dimension; ++d) list_.points[i].u[d] = u[d * size + i];
   });
-  return sweep(list_, kernels_.list, law);
+}
+
+template <class Law>
+bool Correspondence::force_by(const Law& law, std::span<const double> u, std::span<double> force) {
+  if (settings_.stabilisation == Stabilisation::bond_associated)
+    return in_dimension([&]<int D>(std::integral_constant<int, D>) { return sweep_bonds<D>(law, u, force); });
+  look_at(u);
+  for (std::size_t d = 0; d < static_cast<std::size_t>(body().dimension); ++d)
+    lattice_.out[d] = list_.out[d] = force.data() + d * body().size();
+  return body().on_lattice() != nullptr ? sweep(lattice_, kernels_.lattice, law)
+                                        : sweep(list_, kernels_.list, law);
 }
 
 std::optional<Breakdown> Correspondence::internal_force(std::span<const double> u, std::span<double> force) {
@@ -323,11 +327,60 @@ std::optional<Breakdown> Correspondence::find_fault(std::span<const double> u) c
   });
 }
 
+/// Calls visit(point, row) for the points whose rows the kernels make of [begin, end).
+template <class Visit>
+void Correspondence::for_each_row(std::size_t begin, std::size_t end, const Visit& visit) const {
+  std::size_t row = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    if (body().on_lattice() != nullptr && lattice_.families[i / kLanes] == 0) continue;
+    visit(i, row++);
+  }
+}
+
 double Correspondence::strain_energy(std::span<const double> u) {
-  const std::vector<ModelField> of_points = fields(u);
-  const std::vector<double>& density = of_points[1].values;
-  return ordered_sum_of(density.size(),
-                        [&](std::size_t n) { return volume_[body().points[n]] * density[n]; });
+  if (settings_.stabilisation == Stabilisation::bond_associated) {
+    const std::vector<ModelField> of_points = fields(u);
+    return ordered_sum_of(points(),
+                          [&](std::size_t n) { return volume_[body().points[n]] * of_points[1].values[n]; });
+  }
+  look_at(u);
+  return ordered_sum<double>(
+      body().size(),
+      [&](std::size_t begin, std::size_t end) {
+        Batch<kPiece> batch;
+        double rest[kPiece], energy = 0;
+        const std::size_t n = body().on_lattice() != nullptr
+                                  ? kernels_.lattice.measure(lattice_, begin, end, batch.f, rest)
+                                  : kernels_.list.measure(list_, begin, end, batch.f, rest);
+        law_.stress(n, batch.f.data(), batch.p.data(), batch.energy);
+        for_each_row(begin, end, [&](std::size_t i, std::size_t row) {
+          energy += body().volume[i] * (batch.energy[row] + 0.5 * spring_[i] * rest[row]);
+        });
+        return energy;
+      },
+      kPiece);
+}
+
+/// Calls visit(F) for the deformation gradients of points [begin, end), those without a family left out.
+template <int D>
+void Correspondence::for_each_gradient(
+    std::size_t begin, std::size_t end, std::span<const double> u,
+    const std::function<void(const Eigen::Matrix<double, D, D>&)>& visit) const {
+  if (settings_.stabilisation == Stabilisation::bond_associated) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (const Gauge<D>& gauge : gauges(family<D>(i, u))) visit(gauge.f);
+    return;
+  }
+  Batch<kPiece> batch;
+  const std::size_t n = body().on_lattice() != nullptr
+                            ? kernels_.lattice.deform(lattice_, begin, end, batch.f)
+                            : kernels_.list.deform(list_, begin, end, batch.f);
+  for (std::size_t i = 0; i < n; ++i) {
+    Eigen::Matrix<double, D, D> f;
+    for (std::size_t c = 0; c < D * D; ++c)
+      f(static_cast<Eigen::Index>(c / D), static_cast<Eigen::Index>(c % D)) = batch.f[c][i];
+    visit(f);
+  }
 }
 
 std::optional<Breakdown> Correspondence::inspect(std::span<const double> /*u*/) {
@@ -342,6 +395,12 @@ std::size_t Correspondence::bytes() const {
          incoming_.size() * sizeof(std::uint32_t) + pull_.size() * sizeof(pull_.front());
 }
 
+template void Correspondence::for_each_gradient<2>(
+    std::size_t, std::size_t, std::span<const double>,
+    const std::function<void(const Eigen::Matrix<double, 2, 2>&)>&) const;
+template void Correspondence::for_each_gradient<3>(
+    std::size_t, std::size_t, std::span<const double>,
+    const std::function<void(const Eigen::Matrix<double, 3, 3>&)>&) const;
 template bool Correspondence::force_by(const Majorant<2>&, std::span<const double>, std::span<double>);
 template bool Correspondence::force_by(const Majorant<3>&, std::span<const double>, std::span<double>);
 

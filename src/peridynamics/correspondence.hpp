@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <map>
 
 #include "material/plane.hpp"
@@ -102,6 +103,9 @@ class Correspondence final : public PointModel {
   void make_bonds();
   [[nodiscard]] double spring_of(std::size_t point, double trace, double weights) const;
 
+  void look_at(std::span<const double> u);
+  template <class Visit>
+  void for_each_row(std::size_t begin, std::size_t end, const Visit& visit) const;
   template <class Law>
   bool force_by(const Law& law, std::span<const double> u, std::span<double> force);
   template <class Bonds, class Law>
@@ -112,7 +116,14 @@ class Correspondence final : public PointModel {
 
   [[nodiscard]] double scale_of(double a);
   template <int D>
-  [[nodiscard]] double majorant_of(std::span<const double> u) const;
+  [[nodiscard]] Majorant<D> majorant(double a) const {
+    return {a, 1 - 2 * rest_shear_ / rest_longitudinal_};
+  }
+  template <int D>
+  void for_each_gradient(std::size_t begin, std::size_t end, std::span<const double> u,
+                         const std::function<void(const Eigen::Matrix<double, D, D>&)>& visit) const;
+  template <int D>
+  [[nodiscard]] double majorant_of(std::span<const double> u);
   template <int D>
   [[nodiscard]] double largest_eigenvalue_of(double a);
   template <int D>

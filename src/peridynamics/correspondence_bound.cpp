@@ -3,6 +3,7 @@
 // law's largest frequency is in this body does not depend on the state: it is found once per modulus, by the
 // method of Lanczos.
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -67,30 +68,46 @@ double largest_eigenvalue(const std::vector<double>& mass, const Product& produc
   return bound;
 }
 
+// Tangents of four or nine rows; no fixed size, whose unrolled solvers take minutes to compile.
+using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 9, 9>;
+
+constexpr std::size_t kPiece = 256;  // points that a thread takes at a time
+constexpr double kSlack = 1e-6;      // tells equal tangents from larger ones in spite of rounding
+
+/// Whether b - a is positive definite: much quicker than eigenvalues.
+bool is_below(const SmallMatrix& a, const SmallMatrix& b) {
+  return Eigen::LLT<SmallMatrix>(b - a).info() == Eigen::Success;
+}
+
 }  // namespace
 
-/// The smallest modulus a of a majorant of all tangents in a state, at least a share of that at rest (Pa).
+/// The smallest modulus a of a majorant of all tangents in a state (Pa).
 template <int D>
-double Correspondence::majorant_of(std::span<const double> u) const {
-  using Tangent = typename ResponseIn<D>::Tangent;
-  const Majorant<D> majorant{1, 1 - 2 * rest_shear_ / rest_longitudinal_};
-  const Tangent scale = Eigen::SelfAdjointEigenSolver<Tangent>(majorant.unit()).operatorInverseSqrt();
+double Correspondence::majorant_of(std::span<const double> u) {
+  const SmallMatrix scale =
+      Eigen::SelfAdjointEigenSolver<SmallMatrix>(majorant<D>(1).unit()).operatorInverseSqrt();
+  const SmallMatrix one = SmallMatrix::Identity(D * D, D * D);
   struct Largest {
     double value = 0;
     void operator+=(const Largest& other) { value = std::max(value, other.value); }
   };
-  const auto& points = body().points;
-  const double found = ordered_sum<Largest>(points.size(), [&](std::size_t begin, std::size_t end) {
-                         Largest most;
-                         for (std::size_t n = begin; n < end; ++n)
-                           for (const Gauge<D>& gauge : gauges(family<D>(points[n], u))) {
-                             const Tangent scaled = scale * law_.respond<D>(gauge.f).tangent * scale;
-                             most += {Eigen::SelfAdjointEigenSolver<Tangent>(scaled, Eigen::EigenvaluesOnly)
-                                          .eigenvalues()[D * D - 1]};
-                           }
-                         return most;
-                       }).value;
-  return std::max(found, kSoftest * rest_longitudinal_);
+  if (settings_.stabilisation != Stabilisation::bond_associated) look_at(u);
+  const double found = ordered_sum<Largest>(
+                           body().size(),
+                           [&](std::size_t begin, std::size_t end) {
+                             Largest most;
+                             for_each_gradient<D>(begin, end, u, [&](const Eigen::Matrix<double, D, D>& f) {
+                               const SmallMatrix scaled = scale * law_.respond<D>(f).tangent * scale;
+                               if (is_below(scaled, (1 + kSlack) * most.value * one)) return;
+                               most +=
+                                   {Eigen::SelfAdjointEigenSolver<SmallMatrix>(scaled, Eigen::EigenvaluesOnly)
+                                        .eigenvalues()[D * D - 1]};
+                             });
+                             return most;
+                           },
+                           kPiece)
+                           .value;
+  return (1 + kSlack) * found;
 }
 
 /// Largest eigenvalue of the majorant's stiffness over volumes (Pa/m^2). Ghosts follow their masters as at a
@@ -104,7 +121,7 @@ double Correspondence::largest_eigenvalue_of(double a) {
   const auto sign = [](const GhostPoint& ghost, std::size_t d) {
     return ghost.faces.test(2 * d) || ghost.faces.test(2 * d + 1) ? -1.0 : 1.0;
   };
-  const Majorant<D> law{a, 1 - 2 * rest_shear_ / rest_longitudinal_};
+  const Majorant<D> law = majorant<D>(a);
   return largest_eigenvalue(mass, [&](const std::vector<double>& x, std::vector<double>& y) {
     bent = x;
     for (std::size_t d = 0; d < D; ++d)
@@ -140,7 +157,7 @@ double Correspondence::scale_of(double a) {
 
 void Correspondence::stiffness_bound(std::span<const double> u, std::span<double> bound) {
   const double a = in_dimension([&]<int D>(std::integral_constant<int, D>) { return majorant_of<D>(u); });
-  const double scale = scale_of(a);
+  const double scale = scale_of(std::max(a, kSoftest * rest_longitudinal_));
   std::fill(bound.begin(), bound.end(), 0.0);
   for (std::size_t d = 0; d < static_cast<std::size_t>(body().dimension); ++d)
     for (const std::size_t i : body().points) bound[d * body().size() + i] = scale * volume_[i];

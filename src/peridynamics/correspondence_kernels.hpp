@@ -65,6 +65,9 @@ template <class Bonds>
 struct CorrespondenceSweeps {
   /// Deformation gradients of the points, one after the other. Returns how many.
   std::size_t (*deform)(const Bonds& on, std::size_t begin, std::size_t end, const GradientRows& f);
+  /// The same, and what they do not explain, sum(omega |z|^2 V), into a row of its own.
+  std::size_t (*measure)(const Bonds& on, std::size_t begin, std::size_t end, const GradientRows& f,
+                         double* rest);
   /// R of the same points from gradients and stresses.
   void (*reply)(Bonds& on, std::size_t begin, std::size_t end, const GradientRows& f, const GradientRows& p);
   /// Forces, from R and s at both ends of the bonds.

@@ -54,13 +54,14 @@ RIVEN_INLINE void reply_eight(Bonds& on, std::size_t point, const GradientRows& 
 
 // ---- on a lattice ----
 
-/// F = 1 + sum(omega eta xi V) K^-1 of eight points, into rows from n on.
-template <int D, bool kUniform, bool kIntact>
+/// F = 1 + sum(omega eta xi V) K^-1 of eight points, into rows from n on, and if asked for sum(omega |z|^2 V)
+/// = sum(omega |eta|^2 V) - H : sum(omega eta xi V), since z is what a least-squares fit leaves.
+template <int D, bool kUniform, bool kIntact, bool kRest>
 RIVEN_INLINE void deform_block(const CorrespondenceLattice& on, std::size_t block, const GradientRows& f,
-                               std::size_t n) {
+                               double* rests, std::size_t n) {
   const std::size_t point = block * kLanes, count = on.stencil.size();
   const std::uint8_t* masks = on.masks + block * count;
-  Lanes u[D], sums[D][D], h[D][D];
+  Lanes u[D], sums[D][D], h[D][D], rest = broadcast(0);
   load_displacements(on, point, u);
   clear(sums);
   for (std::size_t k = 0; k < count; ++k) {
@@ -68,29 +69,35 @@ RIVEN_INLINE void deform_block(const CorrespondenceLattice& on, std::size_t bloc
     const CorrespondenceBond& bond = on.stencil[k];
     RIVEN_UNROLL
     for (int a = 0; a < D; ++a) {
-      Lanes eta = bond.weight * (load_at(on.u[static_cast<std::size_t>(a)], point, bond.shift) - u[a]);
-      if (!kIntact) eta = select(expand(masks[k]), eta);
-      if (!kUniform) eta = eta * load_at(on.volume, point, bond.shift);
+      const Lanes eta = load_at(on.u[static_cast<std::size_t>(a)], point, bond.shift) - u[a];
+      Lanes weighed = bond.weight * eta;
+      if (!kIntact) weighed = select(expand(masks[k]), weighed);
+      if (!kUniform) weighed = weighed * load_at(on.volume, point, bond.shift);
+      if (kRest) rest += weighed * eta;
       RIVEN_UNROLL
-      for (int b = 0; b < D; ++b) sums[a][b] += eta * bond.xi[static_cast<std::size_t>(b)];
+      for (int b = 0; b < D; ++b) sums[a][b] += weighed * bond.xi[static_cast<std::size_t>(b)];
     }
   }
   times_shape<D>(on.shape, point, sums, h);
   const double scale = kUniform ? on.uniform_volume : 1;
   RIVEN_UNROLL
   for (int a = 0; a < D; ++a) RIVEN_UNROLL
-  for (int b = 0; b < D; ++b)
+  for (int b = 0; b < D; ++b) {
     store(f[static_cast<std::size_t>(D * a + b)] + n, (a == b ? 1.0 : 0.0) + scale * h[a][b]);
+    if (kRest) rest = rest - scale * h[a][b] * sums[a][b];
+  }
+  if (kRest) store(rests + n, scale * rest);
 }
 
-template <int D, bool kUniform>
+template <int D, bool kUniform, bool kRest>
 RIVEN_INLINE std::size_t deform_blocks(const CorrespondenceLattice& on, std::size_t begin, std::size_t end,
-                                       const GradientRows& f) {
+                                       const GradientRows& f, double* rest) {
   std::size_t n = 0;
   for (std::size_t block = begin / kLanes; block < end / kLanes; ++block) {
     if (on.families[block] == 0) continue;
-    if (on.blocks[block] == BlockKind::intact) deform_block<D, kUniform, true>(on, block, f, n);
-    if (on.blocks[block] == BlockKind::partial) deform_block<D, kUniform, false>(on, block, f, n);
+    if (on.blocks[block] == BlockKind::intact) deform_block<D, kUniform, true, kRest>(on, block, f, rest, n);
+    if (on.blocks[block] == BlockKind::partial)
+      deform_block<D, kUniform, false, kRest>(on, block, f, rest, n);
     n += kLanes;
   }
   return n;
@@ -99,8 +106,14 @@ RIVEN_INLINE std::size_t deform_blocks(const CorrespondenceLattice& on, std::siz
 template <int D>
 std::size_t deform(const CorrespondenceLattice& on, std::size_t begin, std::size_t end,
                    const GradientRows& f) {
-  return on.uniform_volume > 0 ? deform_blocks<D, true>(on, begin, end, f)
-                               : deform_blocks<D, false>(on, begin, end, f);
+  return on.uniform_volume > 0 ? deform_blocks<D, true, false>(on, begin, end, f, nullptr)
+                               : deform_blocks<D, false, false>(on, begin, end, f, nullptr);
+}
+
+template <int D>
+std::size_t measure(const CorrespondenceLattice& on, std::size_t begin, std::size_t end,
+                    const GradientRows& f, double* rest) {
+  return deform_blocks<D, false, true>(on, begin, end, f, rest);
 }
 
 template <int D>
@@ -202,20 +215,22 @@ RIVEN_INLINE void for_each_eight(const CorrespondenceList& list, std::size_t poi
     if (*masks != 0) visit(gather<D>(list, list.points[point], n), expand(*masks));
 }
 
-template <int D>
-std::size_t deform(const CorrespondenceList& list, std::size_t begin, std::size_t end,
-                   const GradientRows& f) {
+template <int D, bool kRest>
+RIVEN_INLINE std::size_t deform_points(const CorrespondenceList& list, std::size_t begin, std::size_t end,
+                                       const GradientRows& f, double* rests) {
   for (std::size_t i = begin; i < end; ++i) {
-    Lanes sums[D][D];
+    Lanes sums[D][D], squares = broadcast(0);
     clear(sums);
     for_each_eight<D>(list, i, [&](const ListedBonds8<D>& at, Mask exists) RIVEN_INLINED {
       RIVEN_UNROLL
       for (int a = 0; a < D; ++a) {
-        const Lanes eta = select(exists, at.weight * at.eta[a]);
+        const Lanes weighed = select(exists, at.weight * at.eta[a]);
+        if (kRest) squares += weighed * at.eta[a];
         RIVEN_UNROLL
-        for (int b = 0; b < D; ++b) sums[a][b] += eta * at.xi[b];
+        for (int b = 0; b < D; ++b) sums[a][b] += weighed * at.xi[b];
       }
     });
+    double rest = kRest ? sum(squares) : 0;
     RIVEN_UNROLL
     for (int a = 0; a < D; ++a) {
       double row[D];
@@ -223,14 +238,28 @@ std::size_t deform(const CorrespondenceList& list, std::size_t begin, std::size_
       for (int m = 0; m < D; ++m) row[m] = sum(sums[a][m]);
       RIVEN_UNROLL
       for (int b = 0; b < D; ++b) {
-        double h = a == b ? 1 : 0;
+        double h = 0;
         RIVEN_UNROLL
         for (int m = 0; m < D; ++m) h += row[m] * list.shape[static_cast<std::size_t>(upper<D>(m, b))][i];
-        f[static_cast<std::size_t>(D * a + b)][i - begin] = h;
+        f[static_cast<std::size_t>(D * a + b)][i - begin] = h + (a == b ? 1 : 0);
+        rest -= h * row[b];
       }
     }
+    if (kRest) rests[i - begin] = rest;
   }
   return end - begin;
+}
+
+template <int D>
+std::size_t deform(const CorrespondenceList& list, std::size_t begin, std::size_t end,
+                   const GradientRows& f) {
+  return deform_points<D, false>(list, begin, end, f, nullptr);
+}
+
+template <int D>
+std::size_t measure(const CorrespondenceList& list, std::size_t begin, std::size_t end, const GradientRows& f,
+                    double* rest) {
+  return deform_points<D, true>(list, begin, end, f, rest);
 }
 
 template <int D>
@@ -289,7 +318,7 @@ void pull(const CorrespondenceList& list, std::size_t begin, std::size_t end) {
 
 template <int D>
 CorrespondenceKernels kernels_of() {
-  return {{deform<D>, reply<D>, pull<D>}, {deform<D>, reply<D>, pull<D>}};
+  return {{deform<D>, measure<D>, reply<D>, pull<D>}, {deform<D>, measure<D>, reply<D>, pull<D>}};
 }
 
 inline CorrespondenceKernels correspondence_kernels(int dimension) {
