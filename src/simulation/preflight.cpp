@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/nearest_name.hpp"
+#include "material/linear_elastic.hpp"
 #include "solver/velocity_verlet.hpp"
 #include "verification/reference_points.hpp"
 
@@ -356,6 +357,11 @@ std::vector<std::string> warnings(const Simulation& simulation) {
     list.emplace_back(
         "the published stabilisation has a wrong unit: its strength depends on the unit of length, here the "
         "metre; it is kept for comparison, variant = \"stabilised\" is the one to use");
+  if (simulation.input.model.kind == "correspondence" &&
+      simulation.input.materials.front().law == LinearElastic::name)
+    list.emplace_back(
+        "the law \"linear-elastic\" takes rotations for strain: where they reach 1 % its stresses are wrong; "
+        "\"compressible-neo-hookean\" has the same constants and no such limit");
   if (!simulation.model->conservative())
     list.push_back(
         fmt::format("the model \"{}\" has no energy and holds for the loading \"{}\" only: it is kept for "
