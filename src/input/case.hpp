@@ -83,14 +83,16 @@ struct SetInput {  // [set.NAME]: exactly one of where, group and a shape
 };
 
 struct ModelInput {               // [model]
-  std::string kind = "membrane";  // or "membrane-bond", "pmb", "lps"
-  double stabilisation = 4;       // membrane: factor G of the stabilisation energy; 0 switches it off
-  // membrane-bond
-  std::string loading;                    // "equibiaxial", "planar", "uniaxial", "uniaxial-compression"
-  std::string variant;                    // "published" or "zero-residual"
-  std::string surface_correction = "on";  // or "off"
-  std::string plane = "stress";           // pmb, lps in two dimensions: or "strain"
-  std::string influence = "inverse";      // lps: or "constant"
+  std::string kind = "membrane";  // or "membrane-bond", "pmb", "lps", "correspondence"
+  // Factor G of the stabilisation energy; 0 switches it off. membrane: 4, correspondence: 1 unless given
+  std::optional<double> stabilisation;
+  // membrane-bond: "published" or "zero-residual"; correspondence: "stabilised", "published" or
+  // "bond-associated"
+  std::string variant;
+  std::string loading;                    // membrane-bond: "equibiaxial", "planar", "uniaxial", ...
+  std::string surface_correction = "on";  // membrane-bond: or "off"
+  std::string plane = "stress";           // pmb, lps, correspondence in two dimensions: or "strain"
+  std::string influence = "inverse";      // lps, correspondence: or "constant"
   Location at;
 };
 

@@ -283,9 +283,9 @@ Format describe(OutputInput& output, const Case& c) {
                    Key{"fields",
                        Texts{&output.fields,
                              {"displacement", "damage", "strain_energy_density", "nominal_stress",
-                              "weight_minimum", "surface_correction"}},
+                              "weight_minimum", "surface_correction", "deformation_gradient"}},
                        "Fields of the output states; weight_minimum: membrane, surface_correction: "
-                       "membrane-bond."}
+                       "membrane-bond, deformation_gradient: correspondence."}
                        .otherwise(R"(["displacement", "damage", "strain_energy_density", "nominal_stress"])"),
                    Key{"checkpoint_every", Interval{&output.checkpoint_every},
                        "Wall time, or time steps (Verlet) or iterations (statics), between checkpoints, "

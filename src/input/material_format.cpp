@@ -100,7 +100,8 @@ void check_material(const MaterialInput& m, const Case& c, const Check& check) {
     check.fail("law", fmt::format("found \"{}\" with model.kind = \"membrane-bond\", whose bonds are "
                                   "neo-Hookean; expected \"neo-hookean\"",
                                   m.law));
-  if (c.model.kind == "lps" && m.law == LinearElastic::name && !m.number("poissons_ratio"))
+  if ((c.model.kind == "lps" || c.model.kind == "correspondence") && m.law == LinearElastic::name &&
+      !m.number("poissons_ratio"))
     check.fail("poissons_ratio", "missing; expected a number above -1 and below 0.5");
   if (!m.volumetric.empty() && !m.bulk_modulus)
     check.fail("volumetric",
@@ -116,7 +117,7 @@ Format describe(MaterialInput& m, const Case& c) {
   std::vector<Key> keys = {
       Key{"law", Text{&m.law, law_names()},
           "The constitutive law. The models `pmb` and `lps` take `linear-elastic`, membranes a rubber W(I1, "
-          "I2)."}
+          "I2), `correspondence` any; in space and in plane strain a rubber needs `bulk_modulus` there."}
           .required(),
       Key{"density", Quantity{&m.density, dimension::density, positive}, "Needed where inertia counts."}
           .required_if(When{"solver.method", &c.solver.method, {"verlet"}})};

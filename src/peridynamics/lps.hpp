@@ -38,7 +38,7 @@ class Lps final : public PointModel {
   [[nodiscard]] double strain_energy(std::span<const double> u) override;
   [[nodiscard]] bool conservative() const override { return true; }
   void stiffness_bound(std::span<const double> u, std::span<double> bound) override;
-  /// A block is the family of a body point.
+  /// A part is the family of a body point.
   [[nodiscard]] std::size_t tangent_parts() const override { return body().points.size(); }
   void tangent(std::span<const double> u, std::size_t first, std::size_t last,
                TangentBlocks& to) const override;

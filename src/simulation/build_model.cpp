@@ -4,6 +4,7 @@
 
 #include "input/material_format.hpp"
 #include "peridynamics/bond_membrane.hpp"
+#include "peridynamics/correspondence.hpp"
 #include "peridynamics/lps.hpp"
 #include "peridynamics/membrane.hpp"
 #include "peridynamics/pmb.hpp"
@@ -77,6 +78,35 @@ std::unique_ptr<PointModel> make_lps(const Case& in, Body body) {
   }
 }
 
+CorrespondenceSettings correspondence_settings(const Case& in) {
+  CorrespondenceSettings settings{
+      .material = make_material(in.materials.front()),
+      .plane = in.model.plane == "strain" ? Plane::strain : Plane::stress,
+      .influence = in.model.influence == "constant" ? Influence::constant : Influence::inverse,
+      .factor = in.model.stabilisation.value_or(0)};
+  if (in.model.variant == "published") settings.stabilisation = Stabilisation::published;
+  if (in.model.variant == "bond-associated") settings.stabilisation = Stabilisation::bond_associated;
+  return settings;
+}
+
+std::unique_ptr<PointModel> make_correspondence(const Case& in, Body body) {
+  if (!in.inclusions.empty())
+    throw InputError(
+        in.inclusions.front().at,
+        "inclusion: the model \"correspondence\" has no rigid inclusions; expected holes and cracks only");
+  const MaterialInput& material = in.materials.front();
+  if (material.critical_stretch)
+    throw InputError(material.at, fmt::format("material.{}.critical_stretch: bonds of the model "
+                                              "\"correspondence\" do not break yet; expected none, or kind = "
+                                              "\"pmb\"",
+                                              material.name));
+  try {
+    return std::make_unique<Correspondence>(std::move(body), correspondence_settings(in));
+  } catch (const InputError& error) {
+    throw InputError(in.model.at, std::string("model: ") + error.what());
+  }
+}
+
 /// Names of the laws of which something holds.
 template <class Holds>
 std::string laws_that(const Holds& holds) {
@@ -87,8 +117,10 @@ std::string laws_that(const Holds& holds) {
   return names;
 }
 
-/// Linear solids take Hooke's law, membranes what is incompressible and a function of the invariants.
+/// Linear solids take Hooke's law, membranes what is incompressible and a function of the invariants,
+/// correspondence all.
 void check_law(const Case& in) {
+  if (in.model.kind == "correspondence") return;
   const MaterialInput& material = in.materials.front();
   const bool springs = in.model.kind == "pmb" || in.model.kind == "lps";
   const auto fits = [springs]<class L>(const L&) {
@@ -113,11 +145,12 @@ std::unique_ptr<PointModel> make_model(const Case& in, Body body) {
   check_law(in);
   if (in.model.kind == "pmb") return make_pmb(in, std::move(body));
   if (in.model.kind == "lps") return make_lps(in, std::move(body));
+  if (in.model.kind == "correspondence") return make_correspondence(in, std::move(body));
   const Material material = make_material(in.materials.front());
   try {
     if (in.model.kind == "membrane-bond")
       return std::make_unique<BondMembrane>(std::move(body), material, bond_settings(in.model));
-    return std::make_unique<Membrane>(std::move(body), material, in.model.stabilisation);
+    return std::make_unique<Membrane>(std::move(body), material, in.model.stabilisation.value());
   } catch (const InputError& error) {
     throw InputError(in.model.at, std::string("model: ") + error.what());
   }

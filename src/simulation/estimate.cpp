@@ -25,12 +25,15 @@ constexpr double kOutput = 25;
 struct Footprint {
   double point = 0;        // per stored point
   double listed_bond = 0;  // per directed bond of a list, body and model together
+  double bond = 0;         // per directed bond, listed or not
 };
 
-Footprint footprint(const std::string& model_kind) {
-  if (model_kind == "membrane-bond") return {90, 5};
-  if (model_kind == "pmb") return {80, 13};
-  if (model_kind == "lps") return {100, 21};
+Footprint footprint(const ModelInput& model) {
+  if (model.kind == "membrane-bond") return {90, 5};
+  if (model.kind == "pmb") return {80, 13};
+  if (model.kind == "lps") return {100, 21};
+  if (model.kind == "correspondence")
+    return model.variant == "bond-associated" ? Footprint{120, 5, 28} : Footprint{300, 13};
   return {220, 6};
 }
 
@@ -121,7 +124,7 @@ bool is_loaded(const Case& input, std::size_t axis) {
 
 double memory_estimate(const Case& input) {
   const GeometryInput& geometry = input.geometry;
-  const Footprint model = footprint(input.model.kind);
+  const Footprint model = footprint(input.model);
   const double reach = geometry.horizon / geometry.spacing;
   const auto dimension = static_cast<std::size_t>(geometry.dimension);
   double points = 1, offsets = 1;
@@ -136,6 +139,7 @@ double memory_estimate(const Case& input) {
   constexpr std::array<double, 3> kBall = {1, std::numbers::pi / 4, std::numbers::pi / 6};
   const double bonds = kBall[dimension - 1] * offsets;
   const double per_point = kNumber * (kSolver * geometry.dimension + kOutput) + model.point +
+                           model.bond * bonds +
                            (geometry.bonds == "listed" ? model.listed_bond * bonds : bonds / 8);
   return kProgram + points * per_point;
 }

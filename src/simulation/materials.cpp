@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/SVD>
 #include <algorithm>
 
 #include "input/material_format.hpp"
@@ -61,6 +62,25 @@ std::vector<std::string> stability_warnings(const Case& input) {
                                   stretches.why));
   }
   return lines;
+}
+
+std::optional<std::string> rotation_warning(const Case& input, const ModelField& gradient) {
+  constexpr double kNoticeable = 0.01;
+  if (input.materials.front().law != LinearElastic::name) return std::nullopt;
+  double largest = 0;
+  for (std::size_t at = 0; at < gradient.values.size(); at += 9) {
+    const Eigen::Map<const Eigen::Matrix3d> f(gradient.values.data() + at);  // the transpose turns as far
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const double trace = (svd.matrixU() * svd.matrixV().transpose()).trace();
+    largest = std::max(largest, std::acos(std::clamp(0.5 * (trace - 1), -1.0, 1.0)));
+  }
+  if (largest <= kNoticeable) return std::nullopt;
+  return fmt::format(
+      "points have turned by up to {:.2g} rad, which the law \"linear-elastic\" takes for strain: above 0.01 "
+      "its "
+      "stresses are wrong by {:.2g} of Young's modulus and more; \"compressible-neo-hookean\" has the same "
+      "constants and no such limit",
+      largest, 0.5 * largest * largest);
 }
 
 }  // namespace riven

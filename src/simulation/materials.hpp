@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "input/case.hpp"
 #include "material/material.hpp"
+#include "model/model.hpp"
 
 namespace riven {
 
@@ -20,5 +22,9 @@ std::string moduli_text(const Material& material);
 /// A line for each instability of a law within the stretches that the case asks for; of a motion, which asks
 /// for none, from 0.5 to 2.
 std::vector<std::string> stability_warnings(const Case& input);
+
+/// What is wrong where points turn by more than 1 % and the law takes that for strain. `gradient`: the field
+/// of deformation gradients.
+std::optional<std::string> rotation_warning(const Case& input, const ModelField& gradient);
 
 }  // namespace riven

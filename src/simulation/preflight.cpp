@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/nearest_name.hpp"
+#include "material/linear_elastic.hpp"
 #include "simulation/materials.hpp"
 #include "solver/velocity_verlet.hpp"
 #include "verification/reference_points.hpp"
@@ -360,10 +361,19 @@ std::vector<std::string> warnings(const Simulation& simulation) {
         "the horizon is {:.3g} spacings: families of so few directions are stiff along the lattice; 3 "
         "is usual",
         ratio));
-  if (simulation.input.model.kind == "membrane" && simulation.input.model.stabilisation < 1)
+  if (simulation.input.model.kind == "membrane" && simulation.input.model.stabilisation.value_or(4) < 1)
     list.emplace_back(
         "with a stabilisation below 1 rows of points fold over one another beside defects and under "
         "compression");
+  if (simulation.input.model.kind == "correspondence" && simulation.input.model.variant == "published")
+    list.emplace_back(
+        "the published stabilisation has a wrong unit: its strength depends on the unit of length, here the "
+        "metre; it is kept for comparison, variant = \"stabilised\" is the one to use");
+  if (simulation.input.model.kind == "correspondence" &&
+      simulation.input.materials.front().law == LinearElastic::name)
+    list.emplace_back(
+        "the law \"linear-elastic\" takes rotations for strain: where they reach 1 % its stresses are wrong; "
+        "\"compressible-neo-hookean\" has the same constants and no such limit");
   if (!simulation.model->conservative())
     list.push_back(
         fmt::format("the model \"{}\" has no energy and holds for the loading \"{}\" only: it is kept for "

@@ -8,6 +8,7 @@
 #include "output/atomic_file.hpp"
 #include "output/vtu.hpp"
 #include "simulation/interrupt.hpp"
+#include "simulation/materials.hpp"
 #include "simulation/resume.hpp"
 
 namespace riven {
@@ -175,14 +176,25 @@ void Recorder::write_fields() {
       field.values.insert(field.values.end(), u.begin(), u.end());
     cloud.fields.push_back(std::move(field));
   }
-  for (ModelField& field : simulation_.model->fields(last_.u))
+  for (ModelField& field : simulation_.model->fields(last_.u)) {
+    if (field.name == "deformation_gradient") look_at_rotations(field);
     if (asked(field.name))
       cloud.fields.push_back({field.name, field.components, std::move(field.values), field.unit});
+  }
   const auto file = ResultFolder::field(static_cast<int>(states_.size()));
   write_vtu(folder_.path() / file, cloud);
   collection_.add(last_.parameter, file);
   add_state(last_.parameter, last_values_);
   last_written_ = true;
+}
+
+/// Tells the first state in which rotations are too large for the law.
+void Recorder::look_at_rotations(const ModelField& gradient) {
+  if (rotations_told_) return;
+  if (const auto warning = rotation_warning(simulation_.input, gradient)) {
+    log_.warning(fmt::format("at {} {:.6g} {}", name(simulation_.parameter), last_.parameter, *warning));
+    rotations_told_ = true;
+  }
 }
 
 void Recorder::add_state(double parameter, const std::vector<double>& values) {

@@ -54,6 +54,7 @@ class Recorder final : public Observer {
   void bring_results_to_disk();
   void add_state(double parameter, const std::vector<double>& values);
   void write_fields();
+  void look_at_rotations(const ModelField& gradient);
   /// At the last state; a model whose force is not the gradient of its energy has no balance.
   [[nodiscard]] EnergySummary energy() const;
 
@@ -68,6 +69,7 @@ class Recorder final : public Observer {
   std::vector<double> last_values_;  // of the probes
   long evaluations_ = 0, iterations_ = 0;
   bool last_written_ = true;
+  bool rotations_told_ = false;
   std::vector<SummaryState> states_;
   std::vector<double>
       state_values_;  // what they were made of: of each the parameter, then the probes' values

@@ -26,6 +26,7 @@ kind = "reference"
 PMB = replaced(MOVING, 'law = "neo-hookean"', 'law = "linear-elastic"') + '\n[model]\nkind = "pmb"\n'
 LPS = replaced(replaced(MOVING, 'law = "neo-hookean"', 'law = "linear-elastic"'), 'youngs_modulus = "6 MPa"',
                'youngs_modulus = "6 MPa"\npoissons_ratio = 0.3') + '\n[model]\nkind = "lps"\n'
+CORRESPONDENCE = PLAIN + '\n[model]\nkind = "correspondence"\n'
 STATIC_PMB = replaced(PLAIN, 'law = "neo-hookean"', 'law = "linear-elastic"') + '\n[model]\nkind = "pmb"\n'
 
 BOND = PLAIN + '\n[model]\nkind = "membrane-bond"\nloading = "planar"\nvariant = "published"\n'
@@ -115,6 +116,17 @@ MISTAKES = [
     ("an inclusion in a linear solid", LPS + '\n[[inclusion]]\ndisc = { radius = "30 mm" }\n', '"30 mm"', '"31 mm"', "[[inclusion]]",
      'the model "lps" has no rigid inclusions'),
     ("a solid of bonds along the axes", LPS, 'horizon = "3 dx"', 'horizon = "1 dx"', "[model]", "too few directions"),
+    ("rubber without a pressure", CORRESPONDENCE, 'kind = "correspondence"', 'kind = "correspondence"\nplane = "strain"',
+     "[model]", "expected a bulk_modulus, or plane stress"),
+    ("a variant of bonds", CORRESPONDENCE, 'kind = "correspondence"', 'kind = "correspondence"\nvariant = "zero-residual"',
+     "variant", "expected one of stabilised, bond-associated, published"),
+    ("a variant of correspondence", BOND, '"published"', '"bond-associated"', "variant", "expected one of published, zero-residual"),
+    ("a published factor", CORRESPONDENCE, 'kind = "correspondence"', 'kind = "correspondence"\nvariant = "published"', "[model]",
+     "stabilisation: missing; the published stabilisation depends on the unit of length"),
+    ("bonds that are stabilised twice", CORRESPONDENCE, 'kind = "correspondence"',
+     'kind = "correspondence"\nvariant = "bond-associated"\nstabilisation = 1', "stabilisation", "needs none"),
+    ("an inclusion in correspondence", CORRESPONDENCE + '\n[[inclusion]]\ndisc = { radius = "30 mm" }\n', '"30 mm"', '"31 mm"',
+     "[[inclusion]]", 'the model "correspondence" has no rigid inclusions'),
     ("influence of springs", PMB, 'kind = "pmb"', 'kind = "pmb"\ninfluence = "constant"', "influence",
      'it belongs to kind = "lps"'),
     ("no density in motion", MOVING, 'density = "1100 kg/m^3"', "", "[material.rubber]", "density"),

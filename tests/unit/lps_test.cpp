@@ -12,38 +12,14 @@
 #include "support/energy_gradient.hpp"
 #include "support/lps_reference.hpp"
 #include "support/pmb_bodies.hpp"
+#include "support/point_states.hpp"
+#include "support/tangents.hpp"
 
 namespace riven::testing {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-double largest(const std::vector<double>& values) {
-  double most = 0;
-  for (const double value : values) most = std::max(most, std::abs(value));
-  return most;
-}
-
-std::vector<double> force_of(Lps& model, const std::vector<double>& u) {
-  std::vector<double> force(model.dofs(), 0.0);
-  EXPECT_FALSE(model.internal_force(u, force));
-  return force;
-}
-
-Vector3d vector_of(const std::vector<double>& from, const Body& body, std::size_t i) {
-  Vector3d v = Vector3d::Zero();
-  for (int d = 0; d < body.dimension; ++d) v[d] = from[static_cast<std::size_t>(d) * body.size() + i];
-  return v;
-}
-
-void set_vector(std::vector<double>& to, const Body& body, std::size_t i, const Vector3d& v) {
-  for (int d = 0; d < body.dimension; ++d) to[static_cast<std::size_t>(d) * body.size() + i] = v[d];
-}
-
-Vector3d place(const Body& body, std::size_t i) {
-  return Vector3d(body.position(i).data());
-}
 
 LpsSettings random_settings(Random& random) {
   return {.youngs_modulus = 72e9,
@@ -58,45 +34,6 @@ Body random_body(Random& random, int dimension, bool mirrored) {
   LatticeBodyInput in = random_cells(random, dimension, mirrored);
   in.horizon = std::max(in.horizon, 1.5 * in.spacing);
   return make_lattice_body(in);
-}
-
-Matrix3d random_matrix(Random& random, int dimension) {
-  Matrix3d m = Matrix3d::Zero();
-  for (int a = 0; a < dimension; ++a)
-    for (int b = 0; b < dimension; ++b) m(a, b) = random.between(-1, 1);
-  return m;
-}
-
-/// u = G X of all bonded points.
-std::vector<double> homogeneous(const Lps& model, const Matrix3d& gradient) {
-  std::vector<double> u(model.dofs(), 0.0);
-  for (const std::size_t i : bonded_points(model.body()))
-    set_vector(u, model.body(), i, gradient * place(model.body(), i));
-  return u;
-}
-
-/// Points that see no free surface: their families are complete, and those of their neighbours.
-std::vector<std::size_t> inner_points(const Body& body) {
-  std::vector<std::size_t> inner;
-  for (const std::size_t i : body.points) {
-    bool all = body.complete[i];
-    body.for_each_neighbour(i, [&](std::size_t j) { all = all && body.complete[j]; });
-    if (all) inner.push_back(i);
-  }
-  return inner;
-}
-
-Matrix3d stress_at(Lps& model, const std::vector<double>& u, std::size_t point) {
-  const auto& points = model.body().points;
-  const auto n = static_cast<std::size_t>(std::find(points.begin(), points.end(), point) - points.begin());
-  const auto fields = model.fields(u);
-  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(fields[2].values.data() + 9 * n);
-}
-
-std::size_t middle_point(const Body& body) {
-  return *std::min_element(body.points.begin(), body.points.end(), [&](std::size_t a, std::size_t b) {
-    return place(body, a).norm() < place(body, b).norm();
-  });
 }
 
 // Every kernel gives the plain loops' forces, on random bodies in random states.
@@ -115,7 +52,7 @@ TEST(Lps, KernelsAgreeWithPlainLoops) {
         const auto u = random_displacements(model, states, 0.1);
         const auto force = force_of(model, u), plain = plain_force(model, settings, u);
         for (std::size_t i = 0; i < force.size(); ++i)
-          worst = std::max(worst, std::abs(force[i] - plain[i]) / largest(plain));
+          worst = std::max(worst, std::abs(force[i] - plain[i]) / largest_of(plain));
       }
     }
   }
@@ -161,7 +98,7 @@ TEST(Lps, LeavesHomogeneousDeformationAlone) {
       const auto inner = inner_points(model.body());
       EXPECT_GT(inner.size(), 5U);
       for (const std::size_t i : inner)
-        EXPECT_LT(vector_of(force, model.body(), i).norm(), 1e-13 * largest(force));
+        EXPECT_LT(vector_of(force, model.body(), i).norm(), 1e-13 * largest_of(force));
     }
 }
 
@@ -191,9 +128,9 @@ TEST(Lps, PassesThePatchTestWithLoadedEdges) {
       auto u = homogeneous(model, g);
       constraints.apply(u);
       auto force = force_of(model, u);
-      const double scale = largest(force);
+      const double scale = largest_of(force);
       constraints.reduce(force);
-      EXPECT_LT(largest(force), 1e-13 * scale);
+      EXPECT_LT(largest_of(force), 1e-13 * scale);
       const Matrix3d stress = stress_at(model, u, middle_point(body));
       for (std::size_t face = 0; face < 2 * static_cast<std::size_t>(dimension); ++face) {
         const auto axis = static_cast<Eigen::Index>(face / 2);
@@ -256,8 +193,8 @@ TEST(Lps, KeepsMomentumAndDoesNotSeeRotations) {
       sum += f;
       moment += (place(body, i) + vector_of(u, body, i)).cross(f);
     }
-    EXPECT_LT(sum.norm(), 1e-12 * largest(force));
-    EXPECT_LT(moment.norm(), 1e-12 * largest(force));  // levers of about 1 m
+    EXPECT_LT(sum.norm(), 1e-12 * largest_of(force));
+    EXPECT_LT(moment.norm(), 1e-12 * largest_of(force));  // levers of about 1 m
 
     Matrix3d turn = Matrix3d::Identity();
     if (dimension == 2) turn.topLeftCorner<2, 2>() = random.rotation();
@@ -272,11 +209,11 @@ TEST(Lps, KeepsMomentumAndDoesNotSeeRotations) {
     const auto turned_force = force_of(model, turned);
     for (const std::size_t i : body.points)
       EXPECT_LT((vector_of(turned_force, body, i) - turn * vector_of(force, body, i)).norm(),
-                1e-12 * largest(force));
+                1e-12 * largest_of(force));
     const auto rigid = force_of(model, homogeneous(model, turn - Matrix3d::Identity()));
     // |Y| - L of rotated places of 1 m errs by 1e-16 m: a strain of 1e-15, and forces of that over those of
     // strains of a tenth.
-    EXPECT_LT(largest(rigid), 1e-13 * largest(force));
+    EXPECT_LT(largest_of(rigid), 1e-13 * largest_of(force));
   }
 }
 
@@ -299,10 +236,10 @@ TEST(Lps, CutBondsCarryNothing) {
       EXPECT_EQ(vector_of(force, body, i), vector_of(other, body, i));
       sum += vector_of(force, body, i);
     }
-    EXPECT_LT(sum.norm(), 1e-13 * largest(force));
+    EXPECT_LT(sum.norm(), 1e-13 * largest_of(force));
     const auto fields = model.fields(u);
     EXPECT_EQ(fields[0].name, "damage");
-    EXPECT_GT(largest(fields[0].values), 0.4);
+    EXPECT_GT(largest_of(fields[0].values), 0.4);
   }
 }
 
@@ -324,18 +261,18 @@ TEST(Lps, BoundsTheStiffnessTightly) {
           std::vector<double> same(model.dofs());
           other.stiffness_bound(u, same);
           for (std::size_t i = 0; i < same.size(); ++i)
-            ASSERT_NEAR(same[i], bound[i], 1e-13 * largest(bound)) << name(set);
+            ASSERT_NEAR(same[i], bound[i], 1e-13 * largest_of(bound)) << name(set);
         }
         const Eigen::MatrixXd k = assembled(model, u);
         // All masses are the same, so the bound of the largest frequency is that of the largest eigenvalue.
         const double exact = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k, Eigen::EigenvaluesOnly)
                                  .eigenvalues()
                                  .maxCoeff();
-        EXPECT_GE(largest(bound), exact);
+        EXPECT_GE(largest_of(bound), exact);
         // Twice the own blocks would need every bond's ends to move against each other: 1.4 times the
         // eigenvalue in 3D, 1.7 in 2D. The dilatation's part takes all its bonds at their worst at once: 2.1
         // at a ratio of 0.45, where the step is 0.69 of the limit.
-        EXPECT_LE(largest(bound), (nu > 0.4 ? 2.3 : 1.8) * exact);
+        EXPECT_LE(largest_of(bound), (nu > 0.4 ? 2.3 : 1.8) * exact);
       }
     }
 }

@@ -2,14 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 #include <memory>
 
 #include "body/listed_body.hpp"
+#include "peridynamics/correspondence.hpp"
 #include "peridynamics/lps.hpp"
 #include "peridynamics/membrane.hpp"
 #include "peridynamics/pmb.hpp"
 #include "support/bodies.hpp"
+#include "support/correspondence_reference.hpp"
 #include "support/laws.hpp"
 #include "support/pmb_bodies.hpp"
 #include "support/states.hpp"
@@ -65,6 +68,17 @@ const std::vector<TangentCase>& cases() {
                  random, laws[static_cast<std::size_t>(random.integer(0, static_cast<int>(laws.size()) - 1))],
                  lists);
            }});
+      rows.push_back({lists ? "CorrespondenceListed" : "Correspondence", [lists](Random& random) {
+                        const Body body = cells(random, lists);
+                        CorrespondenceSettings settings =
+                            random_correspondence(random, body.dimension, false);
+                        settings.stabilisation = std::array{
+                            Stabilisation::energy, Stabilisation::published,
+                            Stabilisation::bond_associated}[static_cast<std::size_t>(random.integer(0, 2))];
+                        auto model = std::make_unique<Correspondence>(body, settings);
+                        auto u = random_displacements(*model, random, 0.03);
+                        return Sample{std::move(model), std::move(u)};
+                      }});
       rows.push_back({lists ? "PmbListed" : "Pmb", [lists](Random& random) {
                         return spring_model<Pmb>(random, lists,
                                                  PmbSettings{.youngs_modulus = 3, .density = 1});

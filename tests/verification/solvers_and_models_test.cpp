@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "peridynamics/bond_membrane.hpp"
+#include "peridynamics/correspondence.hpp"
 #include "peridynamics/lps.hpp"
 #include "peridynamics/pmb.hpp"
 #include "solver/dynamic_relaxation.hpp"
@@ -52,6 +53,17 @@ const std::vector<ModelCase>& models() {
        [] {
          return std::make_unique<Lps>(body(),
                                       LpsSettings{.youngs_modulus = 3, .poissons_ratio = 0.4, .density = 1});
+       }},
+      {"Correspondence", 1.2,
+       [] {
+         return std::make_unique<Correspondence>(
+             body(), CorrespondenceSettings{.material = unit_laws()[1].material()});
+       }},
+      {"BondAssociated", 1.2,
+       [] {
+         return std::make_unique<Correspondence>(
+             body(), CorrespondenceSettings{.material = unit_laws()[1].material(),
+                                            .stabilisation = Stabilisation::bond_associated});
        }},
   };
   return all;
