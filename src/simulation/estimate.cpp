@@ -53,6 +53,32 @@ double body_points(const GeometryInput& geometry) {
   return points;
 }
 
+/// What the sparse tangent of Newton's method takes.
+struct Factors {
+  double bytes = 0, seconds = 0;
+};
+
+/// Powers of the number of points and of how far they couple, in spacings: families couple neighbours of
+/// neighbours, springs neighbours. Fitted to what MUMPS foresees for squares of 900 to 40 000 points and
+/// cubes of 216 to 5832 points, with horizons of 1.5 to 4 spacings: within a third, on cubes within a factor
+/// of two.
+Factors factors(const Case& input) {
+  if (input.solver.method != "newton") return {};
+  constexpr double kFlopsPerSecond = 1.5e10, kEntriesPerSecond = 1e8;  // of one core
+  const GeometryInput& geometry = input.geometry;
+  const double points = body_points(geometry), horizon = geometry.horizon / geometry.spacing;
+  const double reach = (input.model.kind == "pmb" ? 1 : 2) * horizon;
+  const bool in_space = geometry.dimension == 3;
+  const double bonds = in_space ? 4.2 * std::pow(horizon, 3) : 3.1 * horizon * horizon;
+  const double block = geometry.dimension * (input.model.kind == "pmb" ? 2 : 1 + bonds);
+  const double blocks = points * (input.model.kind == "pmb" ? 0.5 * bonds : 1);
+  const double bytes = in_space ? 12e3 * std::pow(reach, 1.5) * std::pow(points / 1728, 0.4)
+                                : 2.1e3 * std::pow(reach, 1.5) * std::pow(points / 1e4, 0.2);
+  const double flops = in_space ? 6e8 * std::pow(reach, 2) * std::pow(points / 1728, 2)
+                                : 2.2e8 * std::pow(reach, 2.5) * std::pow(points / 1e4, 1.6);
+  return {points * bytes, flops / kFlopsPerSecond + blocks * block * block / kEntriesPerSecond};
+}
+
 /// The smallest spacing (m), with horizon in proportion, whose run fits; two digits, rounded up.
 double spacing_that_fits(Case input, double available) {
   const double spacing = input.geometry.spacing, horizon = input.geometry.horizon;
@@ -141,7 +167,7 @@ double memory_estimate(const Case& input) {
   const double per_point = kNumber * (kSolver * geometry.dimension + kOutput) + model.point +
                            model.bond * bonds +
                            (geometry.bonds == "listed" ? model.listed_bond * bonds : bonds / 8);
-  return kProgram + points * per_point;
+  return kProgram + points * per_point + factors(input).bytes;
 }
 
 void check_memory(const Case& input, double available) {
@@ -197,6 +223,11 @@ TimeEstimate time_estimate(const Simulation& simulation) {
     const std::vector<double> rest(model.dofs(), 0.0);
     const double step = solver.safety * stable_step(model, *simulation.constraints, rest);
     estimate.evaluations = std::ceil(solver.until / solver.step.value_or(step));
+  } else if (solver.method == "newton") {
+    constexpr double kIterations = 3.5;  // of a load step
+    estimate.unit = "iterations";
+    estimate.evaluation_s = factors(simulation.input).seconds + 3 * estimate.evaluation_s;
+    estimate.evaluations = kIterations * load_steps(solver);
   } else {
     constexpr double kPerPointAlongSide = 3.5;  // waves must cross the body a few times in each load step
     const auto& faces = simulation.body->faces;

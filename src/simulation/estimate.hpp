@@ -21,12 +21,13 @@ void check_disk(const Simulation& simulation, double available);
 
 /// How long a run takes.
 struct TimeEstimate {
-  double evaluations = 0;   // of the force
-  double evaluation_s = 0;  // one of them with what a step does besides, measured
+  const char* unit = "force evaluations";  // or "iterations", of Newton's method
+  double evaluations = 0;
+  double evaluation_s = 0;  // one of them with what a step does besides
   [[nodiscard]] double total_s() const { return evaluations * evaluation_s; }
 };
 /// Measures the force for a fifth of a second at most. In statics the number of evaluations is a rule of
-/// thumb.
+/// thumb, and so is the time of an iteration of Newton's method.
 TimeEstimate time_estimate(const Simulation& simulation);
 
 }  // namespace riven
