@@ -23,6 +23,12 @@ using Eigen::VectorXd;
 
 constexpr double kSpacing = 0.1;  // m, of `cells_of`
 
+VectorXd first_of(const Eigen::Vector3d& v, int dimension) {
+  VectorXd head(dimension);
+  for (int d = 0; d < dimension; ++d) head[d] = v[d];
+  return head;
+}
+
 /// The family of a point of the endless lattice; `s` is the spring of its stabilisation over the volume.
 struct Lattice {
   std::vector<VectorXd> xi;
@@ -38,7 +44,7 @@ struct Lattice {
         for (int c = -across; c <= across; ++c) {
           const double cells = std::sqrt(a * a + b * b + c * c);
           if (cells == 0 || cells > horizon) continue;
-          const VectorXd x = kSpacing * Eigen::Vector3d(a, b, c).head(dimension);
+          const VectorXd x = kSpacing * first_of(Eigen::Vector3d(a, b, c), dimension);
           xi.push_back(x);
           weight.push_back(kind == Influence::inverse ? horizon / cells : 1);
           shape += weight.back() * x * x.transpose();
@@ -99,7 +105,7 @@ MatrixXd of_force(Correspondence& model, const VectorXd& k) {
       std::vector<double> u(model.dofs(), 0.0);
       for (const std::size_t i : body.points)
         u[static_cast<std::size_t>(axis) * body.size() + i] =
-            sign * amplitude * std::cos(k.dot(place(body, i).head(dimension)));
+            sign * amplitude * std::cos(k.dot(first_of(place(body, i), dimension)));
       return force_of(model, u);
     };
     const auto there = wave(1), back = wave(-1);
