@@ -87,7 +87,7 @@ stretch = [0.9, 0.8]
   const SolverInput solver;
   EXPECT_DOUBLE_EQ(c.geometry.horizon, 0.03);
   EXPECT_EQ(c.model.kind, ModelInput{}.kind);
-  EXPECT_EQ(c.model.stabilisation, ModelInput{}.stabilisation);
+  EXPECT_EQ(c.model.stabilisation, 4);
   EXPECT_EQ(c.solver.increment, solver.increment);
   EXPECT_EQ(c.solver.tolerance, solver.tolerance);
   EXPECT_EQ(c.solver.max_iterations, solver.max_iterations);
