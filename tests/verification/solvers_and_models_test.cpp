@@ -55,8 +55,8 @@ const std::vector<ModelCase>& models() {
        }},
       {"Correspondence", 1.2,
        [] {
-         return std::make_unique<Correspondence>(body(),
-                                                 CorrespondenceSettings{.material = unit_laws()[1].material()});
+         return std::make_unique<Correspondence>(
+             body(), CorrespondenceSettings{.material = unit_laws()[1].material()});
        }},
       {"BondAssociated", 1.2,
        [] {
