@@ -163,7 +163,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"title =", "titel =", "1:1", "did you mean \"title\"?"},
         Wrong{"title = \"Membrane with a hole\"", "", "1:1", "title: missing"},
         Wrong{"\"membrane\"", "\"membran\"", "14:8",
-              "found \"membran\"; expected one of membrane, membrane-bond, pmb, lps; did you mean "
+              "found \"membran\"; expected one of membrane, membrane-bond, pmb, lps, correspondence; did you "
+              "mean "
               "\"membrane\"?"},
         Wrong{"\"neo-hookean\"", "\"neo-hokean\"", "18", "did you mean \"neo-hookean\"?"},
         Wrong{"\"dynamic-relaxation\"", "\"newtons\"", "26",

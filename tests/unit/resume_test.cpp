@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "body/listed_body.hpp"
 #include "peridynamics/bond_membrane.hpp"
+#include "peridynamics/correspondence.hpp"
 #include "peridynamics/lps.hpp"
 #include "peridynamics/pmb.hpp"
 #include "solver/dynamic_relaxation.hpp"
@@ -44,19 +45,27 @@ std::unique_ptr<PointModel> bond_membrane(bool as_list, Faces mirrored) {
                                         BondMembraneSettings{Loading::planar, true, true});
 }
 
-/// Bonds break under all loads, in statics until next to nothing holds together.
-std::unique_ptr<PointModel> pmb(bool as_list, Faces mirrored) {
+/// Without an inclusion.
+Body holed_body(bool as_list, Faces mirrored) {
   const Body on_lattice =
       make_lattice_body(sheet(14, 12, 0.05, mirrored, {{Disc{{0.15, 0.1, 0}, 0.08}}, {}, {}}));
-  return std::make_unique<Pmb>(as_list ? listed(on_lattice) : on_lattice,
+  return as_list ? listed(on_lattice) : on_lattice;
+}
+
+/// Bonds break under all loads, in statics until next to nothing holds together.
+std::unique_ptr<PointModel> pmb(bool as_list, Faces mirrored) {
+  return std::make_unique<Pmb>(holed_body(as_list, mirrored),
                                PmbSettings{.youngs_modulus = 6, .density = 1, .critical_stretch = 0.02});
 }
 
 std::unique_ptr<PointModel> lps(bool as_list, Faces mirrored) {
-  const Body on_lattice =
-      make_lattice_body(sheet(14, 12, 0.05, mirrored, {{Disc{{0.15, 0.1, 0}, 0.08}}, {}, {}}));
-  return std::make_unique<Lps>(as_list ? listed(on_lattice) : on_lattice,
+  return std::make_unique<Lps>(holed_body(as_list, mirrored),
                                LpsSettings{.youngs_modulus = 6, .poissons_ratio = 0.4, .density = 1});
+}
+
+std::unique_ptr<PointModel> correspondence(bool as_list, Faces mirrored) {
+  return std::make_unique<Correspondence>(holed_body(as_list, mirrored),
+                                          CorrespondenceSettings{.material = unit_laws()[0].material()});
 }
 
 struct ModelCase {
@@ -75,6 +84,8 @@ const std::vector<ModelCase>& models() {
       {"PmbListed", [](Faces mirrored) { return pmb(true, mirrored); }},
       {"Lps", [](Faces mirrored) { return lps(false, mirrored); }},
       {"LpsListed", [](Faces mirrored) { return lps(true, mirrored); }},
+      {"Correspondence", [](Faces mirrored) { return correspondence(false, mirrored); }},
+      {"CorrespondenceListed", [](Faces mirrored) { return correspondence(true, mirrored); }},
   };
   return all;
 }
