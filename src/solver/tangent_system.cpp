@@ -58,16 +58,19 @@ void TangentSystem::number_unknowns(const std::vector<Constraints::Image>& image
       unknowns_[i] = {unknowns_[images[i].entry].number, images[i].sign};
 }
 
-/// The unknowns of every block, ascending.
-std::vector<std::vector<int>> TangentSystem::numbers_of(const std::vector<TangentBlocks>& pieces) const {
-  std::vector<std::vector<int>> lists;
+/// The rows of every block that belong to unknowns, ascending by their number.
+std::vector<std::vector<TangentSystem::Row>> TangentSystem::rows_of(
+    const std::vector<TangentBlocks>& pieces) const {
+  std::vector<std::vector<Row>> lists;
   for (const TangentBlocks& piece : pieces)
     for (std::size_t b = 0; b + 1 < piece.begin.size(); ++b) {
-      std::vector<int>& numbers = lists.emplace_back();
-      for (std::size_t n = piece.begin[b]; n < piece.begin[b + 1]; ++n)
-        if (const int number = unknowns_[piece.dofs[n]].number; number >= 0) numbers.push_back(number);
-      std::sort(numbers.begin(), numbers.end());
-      numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+      std::vector<Row>& rows = lists.emplace_back();
+      for (std::size_t n = piece.begin[b]; n < piece.begin[b + 1]; ++n) {
+        const Unknown unknown = unknowns_[piece.dofs[n]];
+        if (unknown.number >= 0) rows.push_back({unknown.number, n - piece.begin[b], unknown.sign});
+      }
+      std::stable_sort(rows.begin(), rows.end(),
+                       [](const Row& x, const Row& y) { return x.number < y.number; });
     }
   return lists;
 }
@@ -76,18 +79,22 @@ std::vector<std::vector<int>> TangentSystem::numbers_of(const std::vector<Tangen
 void TangentSystem::find_pattern(std::span<const double> u) {
   std::vector<std::vector<int>> rows(entries_.size());
   for_each_batch(u, [&](const std::vector<TangentBlocks>& pieces) {
-    const std::vector<std::vector<int>> lists = numbers_of(pieces);
+    const std::vector<std::vector<Row>> lists = rows_of(pieces);
     parallel_for(kShares, [&](std::ptrdiff_t share) {
-      std::vector<int> merged;
-      for (const std::vector<int>& numbers : lists)
+      std::vector<int> numbers, merged;
+      for (const std::vector<Row>& list : lists) {
+        numbers.clear();
+        for (const Row& row : list)
+          if (numbers.empty() || numbers.back() != row.number) numbers.push_back(row.number);
         for (std::size_t n = 0; n < numbers.size(); ++n) {
-          std::vector<int>& row = rows[static_cast<std::size_t>(numbers[n])];
           if (numbers[n] % kShares != share) continue;
+          std::vector<int>& row = rows[static_cast<std::size_t>(numbers[n])];
           merged.clear();
           std::set_union(row.begin(), row.end(), numbers.begin(),
                          numbers.begin() + static_cast<std::ptrdiff_t>(n + 1), std::back_inserter(merged));
           if (merged.size() > row.size()) row = merged;
         }
+      }
     });
   });
   for (const std::vector<int>& row : rows) {
@@ -100,33 +107,32 @@ void TangentSystem::find_pattern(std::span<const double> u) {
 void TangentSystem::assemble(std::span<const double> u) {
   std::fill(matrix_.value.begin(), matrix_.value.end(), 0.0);
   for_each_batch(u, [&](const std::vector<TangentBlocks>& pieces) {
+    const std::vector<std::vector<Row>> lists = rows_of(pieces);
     parallel_for(kShares, [&](std::ptrdiff_t share) {
-      for (const TangentBlocks& piece : pieces) add(piece, static_cast<int>(share));
+      auto list = lists.begin();
+      for (const TangentBlocks& piece : pieces) {
+        const double* block = piece.values.data();
+        for (std::size_t b = 0; b + 1 < piece.begin.size(); ++b, ++list) {
+          const std::size_t size = piece.begin[b + 1] - piece.begin[b];
+          add(*list, block, size, static_cast<int>(share));
+          block += size * size;
+        }
+      }
     });
   });
 }
 
 /// Adds the rows of one share: every row belongs to one thread, and its terms come in the order of the
 /// blocks.
-void TangentSystem::add(const TangentBlocks& blocks, int share) {
-  std::size_t at = 0;  // of the block's first value
-  for (std::size_t b = 0; b + 1 < blocks.begin.size(); ++b) {
-    const std::size_t first = blocks.begin[b], size = blocks.begin[b + 1] - first;
-    for (std::size_t r = 0; r < size; ++r) {
-      const Unknown row = unknowns_[blocks.dofs[first + r]];
-      if (row.number < 0 || row.number % kShares != share) continue;
-      const auto begin = matrix_.begin[static_cast<std::size_t>(row.number)],
-                 end = matrix_.begin[static_cast<std::size_t>(row.number) + 1];
-      const int* columns = matrix_.column.data();
-      for (std::size_t c = 0; c < size; ++c) {
-        const Unknown column = unknowns_[blocks.dofs[first + c]];
-        if (column.number < 0 || column.number > row.number) continue;
-        const auto place = static_cast<std::size_t>(
-            std::lower_bound(columns + begin, columns + end, column.number) - columns);
-        matrix_.value[place] += row.sign * column.sign * blocks.values[at + r * size + c];
-      }
+void TangentSystem::add(const std::vector<Row>& rows, const double* block, std::size_t size, int share) {
+  for (const Row& row : rows) {
+    if (row.number % kShares != share) continue;
+    std::size_t place = matrix_.begin[static_cast<std::size_t>(row.number)];
+    for (const Row& column : rows) {
+      if (column.number > row.number) break;
+      while (matrix_.column[place] < column.number) ++place;
+      matrix_.value[place] += row.sign * column.sign * block[row.place * size + column.place];
     }
-    at += size * size;
   }
 }
 

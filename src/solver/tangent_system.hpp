@@ -34,13 +34,19 @@ class TangentSystem {
     int number = -1;  // -1: held, or without a tangent
     double sign = 1;
   };
+  /// A row of a block that belongs to an unknown.
+  struct Row {
+    int number = 0;
+    std::size_t place = 0;  // in the block
+    double sign = 1;
+  };
   /// Calls visit(blocks) for all of the tangent's blocks, in order, some hundred parts of it at a time.
   template <class Visit>
   void for_each_batch(std::span<const double> u, const Visit& visit) const;
   void number_unknowns(const std::vector<Constraints::Image>& images, std::span<const double> u);
-  [[nodiscard]] std::vector<std::vector<int>> numbers_of(const std::vector<TangentBlocks>& pieces) const;
+  [[nodiscard]] std::vector<std::vector<Row>> rows_of(const std::vector<TangentBlocks>& pieces) const;
   void find_pattern(std::span<const double> u);
-  void add(const TangentBlocks& blocks, int share);
+  void add(const std::vector<Row>& rows, const double* block, std::size_t size, int share);
 
   const Model& model_;
   std::vector<Unknown> unknowns_;     // of the state's entries
