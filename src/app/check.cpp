@@ -71,6 +71,12 @@ void print_tables(const Case& input) {
   }
 }
 
+void print_fields(const Case& input) {
+  for (const FieldInput& field : input.fields)
+    fmt::print("# field {}: {}, {} places, {}\n", field.name, field.field->file(),
+               field.field->value().values.size(), range(field.field->value()));
+}
+
 std::string extent_text(const Body& body) {
   std::string text;
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(body.dimension); ++axis)
@@ -144,6 +150,7 @@ int check(const Options& options) {
   if (input.short_run) check_short(input, options.set);
   fmt::print("{}\n", resolved_case(input));
   print_tables(input);
+  print_fields(input);
   print_model(simulation);
   print_cost(simulation);
   for (const HistoryColumn& column : probes.columns())

@@ -26,6 +26,14 @@ struct TableInput {  // [table.NAME]: a function that formulas may call
   Location at;
 };
 
+struct FieldInput {  // [field.NAME]: values at places that formulas may read
+  std::string name;
+  std::string file;                            // CSV, relative to the case file
+  std::string value;                           // its column
+  std::shared_ptr<const FieldFunction> field;  // what the file holds
+  Location at;
+};
+
 struct PointsInput {               // [geometry] points = {...}, or mesh = {...}
   std::string file;                // CSV or MSH, relative to the case file
   std::string unit;                // of a mesh's coordinates; empty for points
@@ -204,6 +212,7 @@ struct Case {
   std::string source;
   std::vector<TableInput> tables;
   GeometryInput geometry;
+  std::vector<FieldInput> fields;
   std::vector<HoleInput> holes;
   std::vector<CrackInput> cracks;
   std::vector<InclusionInput> inclusions;

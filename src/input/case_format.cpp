@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/nearest_name.hpp"
+#include "input/field_format.hpp"
 #include "input/format.hpp"
 #include "input/model_format.hpp"
 #include "input/shape_format.hpp"
@@ -456,6 +457,8 @@ Format describe(Case& c) {
            Key{"table", named_tables(c.tables, [&c](TableInput& t) { return describe(t, c); }),
                "Functions given by points."},
            Key{"geometry", Table{[&c] { return describe_geometry(c); }, always}, "The body."}.required(),
+           Key{"field", named_tables(c.fields, [&c](FieldInput& f) { return describe(f, c); }),
+               "Values at places."},
            Key{"hole", tables(c.holes, [&c](HoleInput& h, std::size_t) { return describe(h, c); }), "Holes."},
            Key{"crack", tables(c.cracks, [&c](CrackInput& k, std::size_t) { return describe(k, c); }),
                "Cracks."},

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <utility>
+#include <vector>
 
 namespace riven {
 
@@ -28,6 +29,32 @@ double call_table(void* data, double argument) {
   return call.table->value(argument, called.interval);
 }
 
+// A field as the parser reads it.
+struct Used {
+  FieldUse use;
+  double value = 0;
+  // Loads are asked for the same places in the same order at every step, and to look one up takes longer than
+  // the rest of the formula.
+  std::vector<std::pair<Point, double>> known{};
+  std::size_t next = 0;
+
+  /// Sets the value; false where the field has none.
+  bool read(const Point& x) {
+    if (next >= known.size() || known[next].first != x) {
+      if (!known.empty() && known.front().first == x) {
+        next = 0;
+      } else {
+        const auto found = use.field->at(x);
+        if (!found) return false;
+        known.resize(next);
+        known.emplace_back(x, *found);
+      }
+    }
+    value = known[next++].second;
+    return true;
+  }
+};
+
 }  // namespace
 
 struct Expression::Compiled {
@@ -37,8 +64,9 @@ struct Expression::Compiled {
   mu::Parser parser;
   std::set<std::string> used;
   std::vector<Called> tables;  // the parser points at them
+  std::vector<Used> fields;    // and at their values
 
-  Compiled(std::string text, const std::string& formula, Location place, std::vector<TableCall> calls)
+  Compiled(std::string text, const std::string& formula, Location place, FormulaData data)
       : written(std::move(text)), at(std::move(place)) {
     parser.DefineConst("pi", std::numbers::pi);
     parser.DefineVar("x", &variables.position[0]);
@@ -46,13 +74,31 @@ struct Expression::Compiled {
     parser.DefineVar("z", &variables.position[2]);
     parser.DefineVar("t", &variables.t);
     parser.DefineVar("stretch", &variables.stretch);
-    for (TableCall& call : calls) tables.push_back({std::move(call)});
+    for (TableCall& call : data.tables) tables.push_back({std::move(call)});
+    for (FieldUse& use : data.fields) fields.push_back({std::move(use)});
+    for (Used& field : fields) {
+      field.value = field.use.value_unit * field.use.field->stand_in();
+      parser.DefineVar(field.use.field->name(), &field.value);
+    }
     for (Called& table : tables)  // not to be folded into a constant while the parser compiles
       parser.DefineFunUserData(table.call.table->name(), &call_table, &table, false);
     parser.SetExpr(formula);
     for (const auto& [name, value] : parser.GetUsedVar()) used.insert(name);
     (void)parser.Eval();  // the first evaluation compiles; what does not compile must say so here
     if (parser.GetNumResults() != 1) throw mu::ParserError("a list of values where one is expected");
+  }
+
+  void read_fields() {
+    for (Used& field : fields)
+      if (!field.use.stand_in && !field.read(variables.position)) fail_without_row(*field.use.field);
+  }
+
+  [[noreturn]] void fail_without_row(const FieldFunction& field) const {
+    const Point& x = variables.position;
+    throw InputError(at,
+                     fmt::format("\"{}\": the field {} has no value at ({:.6g}, {:.6g}, {:.6g}) m; expected "
+                                 "a row of {} within half a spacing, {:.4g} m",
+                                 written, field.name(), x[0], x[1], x[2], field.file(), field.reach()));
   }
 
   [[noreturn]] void fail_beyond(const Called& called) const {
@@ -84,8 +130,8 @@ struct Expression::Compiled {
 };
 
 Expression::Expression(std::string written, const std::string& formula, const Location& at,
-                       std::vector<TableCall> tables) try
-    : compiled_(std::make_shared<Compiled>(std::move(written), formula, at, std::move(tables))) {
+                       FormulaData data) try
+    : compiled_(std::make_shared<Compiled>(std::move(written), formula, at, std::move(data))) {
 } catch (const mu::ParserError& error) {
   // muParser counts in the formula with SI numbers, which the user does not see.
   const std::string& message = error.GetMsg();
@@ -96,6 +142,7 @@ Expression::Expression(std::string written, const std::string& formula, const Lo
 
 double Expression::operator()(const Variables& variables) const {
   compiled_->variables = variables;
+  compiled_->read_fields();
   for (Called& table : compiled_->tables) table.beyond.reset();
   const double result = compiled_->parser.Eval();
   for (const Called& table : compiled_->tables)
@@ -113,6 +160,10 @@ bool Expression::depends_on(const std::string& variable) const {
 
 bool Expression::calls_tables() const {
   return !compiled_->tables.empty();
+}
+
+bool Expression::reads_fields() const {
+  return !compiled_->fields.empty();
 }
 
 const Location& Expression::location() const {

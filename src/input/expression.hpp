@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "geometry/shape.hpp"
+#include "input/field_function.hpp"
 #include "input/table_function.hpp"
 
 namespace riven {
@@ -25,21 +26,35 @@ struct TableCall {
   bool stand_in = false;  // call the table's stand-in: for such checks
 };
 
+/// A field that a formula reads at its place.
+struct FieldUse {
+  std::shared_ptr<const FieldFunction> field;
+  double value_unit = 1;  // as of tables
+  bool stand_in = false;
+};
+
+/// What a formula takes from files.
+struct FormulaData {
+  std::vector<TableCall> tables;
+  std::vector<FieldUse> fields;
+};
+
 /// A function of x, y, z, t and stretch that the user wrote; already in SI units. Copies are cheap and share
 /// the compiled formula; evaluate one expression from one thread at a time.
 class Expression {
  public:
   Expression() = default;
   /// `formula`: in SI units and muParser's language. Throws InputError at `at` when it does not parse.
-  Expression(std::string written, const std::string& formula, const Location& at,
-             std::vector<TableCall> tables = {});
+  Expression(std::string written, const std::string& formula, const Location& at, FormulaData data = {});
 
-  /// Throws InputError when a table is asked for a value beyond its ends and does not hold it.
+  /// Throws InputError when a table is asked for a value beyond its ends and does not hold it, or a field for
+  /// one where it has none.
   double operator()(const Variables& variables) const;
 
   [[nodiscard]] const std::string& written() const;  // as the user wrote it
   [[nodiscard]] bool depends_on(const std::string& variable) const;
   [[nodiscard]] bool calls_tables() const;
+  [[nodiscard]] bool reads_fields() const;
   [[nodiscard]] const Location& location() const;
 
  private:

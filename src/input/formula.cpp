@@ -73,7 +73,7 @@ bool follow(const FormulaText& formula, const Expression& plain, const Reading& 
     UnitScale scale;
     scale.*scale_members[base] = std::exp2(log2_scale);
     const Expression scaled(formula.written(), formula.si(scale), plain.location(),
-                            formula.tables(scale, true));
+                            formula.data(scale, true));
     for (const Variables& sample : samples()) {
       Variables moved = sample;
       if (reading.scale_position)
@@ -101,7 +101,7 @@ std::optional<Powers> find_powers(const FormulaText& formula, const Expression& 
 Expression compile(const FormulaText& formula, const Origin& origin) {
   Location at = origin.at;
   try {
-    return {formula.written(), formula.si(), at, formula.tables({}, false)};
+    return {formula.written(), formula.si(), at, formula.data({}, false)};
   } catch (const InputError& error) {
     const std::string message = error.what();
     const std::size_t place = at.file.empty() ? 0 : at.text().size() + 2;
@@ -109,10 +109,10 @@ Expression compile(const FormulaText& formula, const Origin& origin) {
   }
 }
 
-// What checks evaluate at places and times where tables may have no value, or only zeros.
+// What checks evaluate at places and times where tables and fields may have no value, or only zeros.
 Expression for_checks(const FormulaText& formula, const Expression& expression) {
-  if (!formula.calls_tables()) return expression;
-  return {formula.written(), formula.si(), expression.location(), formula.tables({}, true)};
+  if (!formula.needs_data()) return expression;
+  return {formula.written(), formula.si(), expression.location(), formula.data({}, true)};
 }
 
 void check_finite_somewhere(const Expression& value, const Origin& origin) {
@@ -165,7 +165,7 @@ Expression parse_formula(const std::string& text, const Dimension& dimension, co
                          const Origin& origin) {
   const FormulaText formula(text, symbols, origin);
   Expression expression = compile(formula, origin);
-  if (!formula.calls_tables()) check_finite_somewhere(expression, origin);
+  if (!formula.needs_data()) check_finite_somewhere(expression, origin);
   check_dimension(formula, for_checks(formula, expression), dimension, origin);
   return expression;
 }
@@ -192,7 +192,7 @@ Expression parse_condition(const std::string& text, const Symbols& symbols, cons
 Quantity parse_quantity(const std::string& text, const Symbols& symbols, const Origin& origin) {
   const FormulaText formula(text, symbols, origin);
   const Expression value = compile(formula, origin);
-  if (!formula.calls_tables()) check_finite_somewhere(value, origin);
+  if (!formula.needs_data()) check_finite_somewhere(value, origin);
   const std::optional<Powers> powers = find_powers(formula, for_checks(formula, value), {true, true});
   const std::optional<Dimension> found = powers ? powers->whole() : std::nullopt;
   if (!found) origin.fail(fmt::format("\"{}\" joins quantities that do not fit together", text));

@@ -29,6 +29,7 @@ struct Symbols {
   std::optional<double> horizon;       // m
   std::vector<std::string> variables;  // of x, y, z, t, stretch
   std::vector<std::shared_ptr<const TableFunction>> tables{};
+  std::vector<std::shared_ptr<const FieldFunction>> fields{};  // read where x is a variable
 };
 
 /// A formula with units, such as "2 MPa * (1 - cos(2*pi*10*t))", whose result has the given dimension.

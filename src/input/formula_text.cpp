@@ -54,12 +54,14 @@ std::string FormulaText::si(const UnitScale& scale) const {
   return formula;
 }
 
-std::vector<TableCall> FormulaText::tables(const UnitScale& scale, bool stand_in) const {
-  std::vector<TableCall> calls;
+FormulaData FormulaText::data(const UnitScale& scale, bool stand_in) const {
+  FormulaData data;
   for (const auto& table : tables_)
-    calls.push_back(
+    data.tables.push_back(
         {table, scale.of(table->argument().dimension), scale.of(table->value().dimension), stand_in});
-  return calls;
+  for (const auto& field : fields_)
+    data.fields.push_back({field, scale.of(field->value().dimension), stand_in});
+  return data;
 }
 
 std::string FormulaText::what_tables_take() const {
@@ -68,6 +70,9 @@ std::string FormulaText::what_tables_take() const {
     text += fmt::format("; the table {} takes {} (\"{}\") and gives {} (\"{}\")", table->name(),
                         named(table->argument().dimension), table->argument().name,
                         named(table->value().dimension), table->value().name);
+  for (const auto& field : fields_)
+    text += fmt::format("; the field {} gives {} (\"{}\")", field->name(), named(field->value().dimension),
+                        field->value().name);
   return text;
 }
 
@@ -119,7 +124,7 @@ void FormulaText::scan_number() {
 void FormulaText::check_product(double number, std::size_t at) {
   const std::string name(unit_word(text_, at));
   if (contains(symbols_.variables, name) || contains(function_names(), name) || name == "pi" ||
-      contains(table_names(), name))
+      contains(table_names(), name) || contains(field_names(), name))
     fail(at, fmt::format("a product needs its sign: write \"{}*{}\"", number, name));
   if (name == "dx" || name == "horizon") fail_unknown(name, at);
   fail(at, fmt::format("unknown unit \"{}\"; units are {}{}", name, listed(unit_names()),
@@ -154,7 +159,7 @@ void FormulaText::scan_name() {
   if (const auto length = length_name(name)) return add({*length, dimension::length});
   const bool called = character(after_spaces(position_)) == '(';
   const bool known = called ? contains(function_names(), name) || call_table(name)
-                            : name == "pi" || contains(symbols_.variables, name);
+                            : name == "pi" || contains(symbols_.variables, name) || use_field(name);
   if (!known) fail_unknown(name, start);
   if (called) position_ = after_spaces(position_);  // muParser allows no blank before the bracket
   pieces_.push_back({std::string(name), {}});
@@ -168,9 +173,24 @@ bool FormulaText::call_table(std::string_view name) {
   return true;
 }
 
+bool FormulaText::use_field(std::string_view name) {
+  if (!contains(symbols_.variables, "x")) return false;  // it has values at places alone
+  const auto found = std::find_if(symbols_.fields.begin(), symbols_.fields.end(),
+                                  [&](const auto& field) { return field->name() == name; });
+  if (found == symbols_.fields.end()) return false;
+  if (std::find(fields_.begin(), fields_.end(), *found) == fields_.end()) fields_.push_back(*found);
+  return true;
+}
+
 std::vector<std::string> FormulaText::table_names() const {
   std::vector<std::string> names;
   for (const auto& table : symbols_.tables) names.push_back(table->name());
+  return names;
+}
+
+std::vector<std::string> FormulaText::field_names() const {
+  std::vector<std::string> names;
+  for (const auto& field : symbols_.fields) names.push_back(field->name());
   return names;
 }
 
@@ -221,11 +241,18 @@ void FormulaText::fail_unknown(std::string_view name, std::size_t at) const {
   if (contains(tables, name))
     fail(at, fmt::format("\"{0}\" is a table; write its argument in brackets, as in \"{0}({1})\"", name,
                          symbols_.variables.empty() ? "2" : symbols_.variables.back()));
+  const std::vector<std::string> fields = field_names();
+  if (contains(fields, name))
+    fail(at,
+         fmt::format("\"{0}\" is a field; formulas that know x, y, z read it by its name alone, \"{0}\", at "
+                     "their place",
+                     name));
   std::vector<std::string> known = symbols_.variables;
   known.emplace_back("pi");
   if (symbols_.dx) known.emplace_back("dx");
   if (symbols_.horizon) known.emplace_back("horizon");
   for (const std::string& table : tables) known.push_back(table + "(...)");
+  if (contains(known, "x")) known.insert(known.end(), fields.begin(), fields.end());
   const std::string shown = listed(known);
   known.insert(known.end(), tables.begin(), tables.end());
   known.insert(known.end(), function_names().begin(), function_names().end());

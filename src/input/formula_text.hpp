@@ -28,9 +28,10 @@ class FormulaText {
   /// The formula in muParser's language, in base units of the given sizes.
   [[nodiscard]] std::string si(const UnitScale& scale = {}) const;
 
-  /// The tables that it calls, as `si` of the same scale needs them; or their stand-ins.
-  [[nodiscard]] std::vector<TableCall> tables(const UnitScale& scale, bool stand_in) const;
-  [[nodiscard]] bool calls_tables() const { return !tables_.empty(); }
+  /// The tables and fields that it takes values from, as `si` of the same scale needs them; or their
+  /// stand-ins.
+  [[nodiscard]] FormulaData data(const UnitScale& scale, bool stand_in) const;
+  [[nodiscard]] bool needs_data() const { return !tables_.empty() || !fields_.empty(); }
   /// For messages: "; the table pull takes a time and gives a length", for each that it calls.
   [[nodiscard]] std::string what_tables_take() const;
 
@@ -48,7 +49,9 @@ class FormulaText {
   void scan_sign();
   void add(const Quantity& quantity) { pieces_.push_back({"", quantity}); }
   bool call_table(std::string_view name);
+  bool use_field(std::string_view name);
   [[nodiscard]] std::vector<std::string> table_names() const;
+  [[nodiscard]] std::vector<std::string> field_names() const;
   [[nodiscard]] std::optional<double> length_name(std::string_view name) const;
   [[nodiscard]] std::size_t after_spaces(std::size_t i) const;
   [[nodiscard]] char character(std::size_t i) const { return i < text_.size() ? text_[i] : '\0'; }
@@ -66,6 +69,7 @@ class FormulaText {
   std::size_t position_ = 0;
   std::vector<Piece> pieces_;
   std::vector<std::shared_ptr<const TableFunction>> tables_;  // that it calls, each once
+  std::vector<std::shared_ptr<const FieldFunction>> fields_;  // that it reads, each once
 };
 
 }  // namespace riven

@@ -11,6 +11,7 @@
 #include "base/csv.hpp"
 #include "geometry/cubes.hpp"
 #include "input/column_unit.hpp"
+#include "input/table_function.hpp"
 
 namespace riven {
 namespace {
@@ -23,7 +24,7 @@ std::string place_text(const PointList& points, std::size_t n) {
                                : fmt::format("({:.6g}, {:.6g}) m", x[0], x[1]);
 }
 
-/// A column in SI.
+/// A column of a given dimension in SI; its unit must be there.
 std::vector<double> read_column(const CsvTable& csv, std::size_t column, const Dimension& dimension) {
   const std::string& name = csv.columns()[column];
   const Location header{csv.file(), csv.header_line()};
@@ -35,15 +36,7 @@ std::vector<double> read_column(const CsvTable& csv, std::size_t column, const D
   if (unit->dimension != dimension)
     throw InputError(header, fmt::format("column \"{}\" is {}; expected {}, such as [{}]", name,
                                          named(unit->dimension), named(dimension), usual));
-  std::vector<double> values;
-  for (std::size_t row = 0; row < csv.rows(); ++row) {
-    const double number = csv.number(row, column);
-    if (!std::isfinite(number))
-      throw InputError({csv.file(), csv.line(row)},
-                       fmt::format("column \"{}\": found {}; expected a finite number", name, number));
-    values.push_back(to_si(number, *unit));
-  }
-  return values;
+  return read_value_column(csv, column).values;
 }
 
 void read_volumes(const CsvTable& csv, double thickness, PointList& points) {
@@ -81,22 +74,28 @@ Location PointList::at(std::size_t point) const {
   return of_mesh() ? Location{fmt::format("{}, {}", file, label(point))} : Location{file, line[point]};
 }
 
-PointList read_points(const std::filesystem::path& file, double thickness) {
-  const CsvTable csv = CsvTable::read(file);
+PointList read_places(const CsvTable& csv, int dimension) {
   PointList points;
   points.file = csv.file();
-  points.dimension = csv.find("z") ? 3 : 2;
-  const auto fewest = static_cast<std::size_t>(points.dimension) + 1;
-  if (csv.rows() < fewest)
-    throw InputError(Location{csv.file()},
-                     fmt::format("found {} points; expected {} at least", csv.rows(), fewest));
+  points.dimension = dimension;
   for (std::size_t n = 0; n < csv.rows(); ++n) points.line.push_back(csv.line(n));
   points.position.resize(csv.rows());
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(points.dimension); ++axis) {
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(dimension); ++axis) {
     const std::string_view name = std::string_view("xyz").substr(axis, 1);
     const std::vector<double> values = read_column(csv, csv.column(name), dimension::length);
     for (std::size_t n = 0; n < values.size(); ++n) points.position[n][axis] = values[n];
   }
+  return points;
+}
+
+PointList read_points(const std::filesystem::path& file, double thickness) {
+  const CsvTable csv = CsvTable::read(file);
+  const int dimension = csv.find("z") ? 3 : 2;
+  const auto fewest = static_cast<std::size_t>(dimension) + 1;
+  if (csv.rows() < fewest)
+    throw InputError(Location{csv.file()},
+                     fmt::format("found {} points; expected {} at least", csv.rows(), fewest));
+  PointList points = read_places(csv, dimension);
   read_volumes(csv, thickness, points);
   return points;
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "base/csv.hpp"
 #include "base/error.hpp"
 #include "geometry/shape.hpp"
 
@@ -32,6 +33,10 @@ struct PointList {
   [[nodiscard]] Location at(std::size_t point) const;
   [[nodiscard]] bool of_mesh() const { return !element.empty(); }
 };
+
+/// The places alone, without volumes: the columns x, y, z, as many as `dimension`. Throws InputError (file,
+/// line).
+PointList read_places(const CsvTable& csv, int dimension);
 
 /// Reads the columns x, y, in three dimensions z, and volume, or in two dimensions area instead, which is
 /// multiplied by the thickness (m). Their names end in their units, as in "x [mm]"; other columns are

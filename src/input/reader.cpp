@@ -154,8 +154,9 @@ void Reader::check_groups(const toml::table& table, const Format& format, const 
 
 Symbols Reader::symbols(std::vector<std::string> variables) const {
   const GeometryInput& g = case_.geometry;
-  Symbols known{{}, {}, std::move(variables), {}};
+  Symbols known{{}, {}, std::move(variables), {}, {}};
   for (const TableInput& table : case_.tables) known.tables.push_back(table.function);
+  for (const FieldInput& field : case_.fields) known.fields.push_back(field.field);
   if (g.spacing > 0) known.dx = g.spacing;
   if (g.horizon > 0) known.horizon = g.horizon;
   return known;

@@ -7,20 +7,6 @@
 namespace riven {
 namespace {
 
-void check_name(const TableInput& table, const Check& check) {
-  constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
-  const std::string& name = table.name;
-  if (name.find_first_not_of(std::string(kLetters) + "0123456789_") != std::string::npos ||
-      name.find_first_of(kLetters) != 0)
-    check.fail("", fmt::format("found the name \"{}\", which formulas could not call; expected a letter, "
-                               "then letters, digits and _",
-                               name));
-  const std::string taken = meaning_in_formulas(name);
-  if (!taken.empty())
-    check.fail("", fmt::format("\"{}\" is {} in formulas; expected another name, such as \"{}_table\"", name,
-                               taken, name));
-}
-
 // A file's mistakes stand where the case names the file, and say their own place.
 void read(TableInput& table, const Case& c, const Check& check) {
   try {
@@ -32,6 +18,19 @@ void read(TableInput& table, const Case& c, const Check& check) {
 }
 
 }  // namespace
+
+void check_formula_name(const std::string& name, const char* what, const Check& check) {
+  constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
+  if (name.find_first_not_of(std::string(kLetters) + "0123456789_") != std::string::npos ||
+      name.find_first_of(kLetters) != 0)
+    check.fail("", fmt::format("found the name \"{}\", which formulas could not use; expected a letter, "
+                               "then letters, digits and _",
+                               name));
+  const std::string taken = meaning_in_formulas(name);
+  if (!taken.empty())
+    check.fail("", fmt::format("\"{}\" is {} in formulas; expected another name, such as \"{}_{}\"", name,
+                               taken, name, what));
+}
 
 Format describe(TableInput& table, const Case& c) {
   return {.doc =
@@ -48,7 +47,7 @@ Format describe(TableInput& table, const Case& c) {
                        "last value."}
                        .otherwise("\"error\"")},
           .finish = [&table, &c](const Check& check) {
-            check_name(table, check);
+            check_formula_name(table.name, "table", check);
             read(table, c, check);
             if (table.argument.empty()) table.argument = table.function->argument().name;
             if (table.value.empty()) table.value = table.function->value().name;

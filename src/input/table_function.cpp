@@ -29,20 +29,6 @@ std::size_t unit_begin(const std::string& column) {
   return last == std::string::npos || bracket == 0 ? 0 : last + 1;
 }
 
-TableFunction::Column read_column(const CsvTable& csv, std::size_t index) {
-  TableFunction::Column column{csv.columns()[index], {}, {}};
-  const Unit unit = column_unit(column.name, {csv.file(), csv.header_line()}).value_or(Unit{});
-  column.dimension = unit.dimension;
-  for (std::size_t row = 0; row < csv.rows(); ++row) {
-    const double number = csv.number(row, index);
-    if (!std::isfinite(number))
-      throw InputError({csv.file(), csv.line(row)},
-                       fmt::format("column \"{}\": found {}; expected a finite number", column.name, number));
-    column.values.push_back(to_si(number, unit));
-  }
-  return column;
-}
-
 void check_rising(const CsvTable& csv, std::size_t argument) {
   for (std::size_t row = 1; row < csv.rows(); ++row)
     if (!(csv.number(row, argument) > csv.number(row - 1, argument)))
@@ -86,6 +72,20 @@ double TableFunction::stand_in(double argument) const {
   return value_size_ * (0.3 + 0.1 * std::log1p(std::abs(argument) / argument_size_));
 }
 
+TableFunction::Column read_value_column(const CsvTable& csv, std::size_t index) {
+  TableFunction::Column column{csv.columns()[index], {}, {}};
+  const Unit unit = column_unit(column.name, {csv.file(), csv.header_line()}).value_or(Unit{});
+  column.dimension = unit.dimension;
+  for (std::size_t row = 0; row < csv.rows(); ++row) {
+    const double number = csv.number(row, index);
+    if (!std::isfinite(number))
+      throw InputError({csv.file(), csv.line(row)},
+                       fmt::format("column \"{}\": found {}; expected a finite number", column.name, number));
+    column.values.push_back(to_si(number, unit));
+  }
+  return column;
+}
+
 TableFunction read_table(const std::string& name, const std::filesystem::path& file,
                          const std::string& argument, const std::string& value, bool hold) {
   const CsvTable csv = CsvTable::read(file);
@@ -103,7 +103,7 @@ TableFunction read_table(const std::string& name, const std::filesystem::path& f
   if (csv.rows() < 2)
     throw InputError(header, fmt::format("found {} below the column names; expected two rows at least",
                                          csv.rows() == 0 ? "no row" : "one row"));
-  TableFunction table(name, file, read_column(csv, from), read_column(csv, to), hold);
+  TableFunction table(name, file, read_value_column(csv, from), read_value_column(csv, to), hold);
   check_rising(csv, from);
   return table;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/csv.hpp"
 #include "input/units.hpp"
 
 namespace riven {
@@ -45,6 +46,9 @@ class TableFunction {
   bool hold_;
   double argument_size_, value_size_;  // the largest magnitudes; 1 where all are 0
 };
+
+/// A column in SI, by the unit in the brackets that end its name. Throws InputError (file, line).
+TableFunction::Column read_value_column(const CsvTable& csv, std::size_t index);
 
 /// Reads two columns of a CSV file whose names may end in a unit in brackets; empty names: the first and the
 /// second. Throws InputError (file, line) for what is no table.

@@ -164,16 +164,22 @@ std::vector<double> marched(const Simulation& simulation) {
   return values;
 }
 
-/// A table that ends before the run does must be told before it. Evaluating a load there says what is wrong.
-void check_tables(const Simulation& simulation) {
-  const auto calls_tables = [](const LoadInput& load) {
-    return std::any_of(load.displacement.begin(), load.displacement.end(),
-                       [](const ComponentInput& c) { return c.value && c.value->calls_tables(); });
-  };
+/// A table that ends before the run does, or a field without a row at a point, must be told before it.
+/// Evaluating a load there says what is wrong.
+void check_data(const Simulation& simulation) {
   const auto& loads = simulation.input.loads;
-  const auto first = std::find_if(loads.begin(), loads.end(), calls_tables);
+  const auto first_that = [&loads](bool (Expression::*does)() const) {
+    return std::find_if(loads.begin(), loads.end(), [does](const LoadInput& load) {
+      return std::any_of(load.displacement.begin(), load.displacement.end(),
+                         [does](const ComponentInput& c) { return c.value && ((*c.value).*does)(); });
+    });
+  };
+  const auto calls = first_that(&Expression::calls_tables), reads = first_that(&Expression::reads_fields);
+  const auto first = std::min(calls, reads);
   if (first == loads.end()) return;
-  for (const double value : marched(simulation)) {
+  std::vector<double> values = marched(simulation);
+  if (calls == loads.end()) values.resize(1);
+  for (const double value : values) {
     simulation.constraints->set_parameter(value);
     const auto offsets = simulation.constraints->offsets();
     if (!std::all_of(offsets.begin(), offsets.end(), [](double u) { return std::isfinite(u); }))
@@ -337,7 +343,7 @@ std::string left_out(std::size_t expectations) {
 
 void check_before_run(const Simulation& simulation, const Probes& probes) {
   check_solver(simulation);
-  check_tables(simulation);  // before the loads are asked for a state
+  check_data(simulation);  // before the loads are asked for a state
   check_step(simulation);
   check_fields(simulation);
   check_families(simulation);

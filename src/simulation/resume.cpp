@@ -63,6 +63,8 @@ std::map<std::string, std::string> decisive_values(const Case& input) {
   });
   for (const TableInput& table : input.tables)
     values["table." + table.name + ".file"] = fingerprint(table.function->file());
+  for (const FieldInput& field : input.fields)
+    values["field." + field.name + ".file"] = fingerprint(field.field->file());
   if (const auto& points = input.geometry.points)
     values[points->is_mesh() ? "geometry.mesh.file" : "geometry.points.file"] =
         fingerprint(points->list->file);

@@ -80,10 +80,10 @@ RunStatus march_on(const Simulation& simulation, Recorder& recorder, Progress& s
   return RunStatus::failed;
 }
 
-/// The result keeps the tables, points, mesh and surface that it came from: it runs again wherever it is
-/// moved, whatever becomes of the files.
+/// The result keeps the tables, fields, points, mesh and surface that it came from: it runs again wherever it
+/// is moved, whatever becomes of the files.
 void keep_tables(Case& input, const std::filesystem::path& folder) {
-  if (!input.tables.empty() || input.geometry.points || input.geometry.surface)
+  if (!input.tables.empty() || !input.fields.empty() || input.geometry.points || input.geometry.surface)
     std::filesystem::create_directories(folder / "tables");
   if (auto& surface = input.geometry.surface) {
     const std::string copy = "tables/geometry-surface.stl";
@@ -101,6 +101,11 @@ void keep_tables(Case& input, const std::filesystem::path& folder) {
     const std::string copy = fmt::format("tables/{}.csv", table.name);
     std::filesystem::copy_file(table.function->file(), folder / copy);
     table.file = copy;
+  }
+  for (FieldInput& field : input.fields) {  // its name is none of a table
+    const std::string copy = fmt::format("tables/{}.csv", field.name);
+    std::filesystem::copy_file(field.field->file(), folder / copy);
+    field.file = copy;
   }
 }
 

@@ -40,6 +40,8 @@ TABLE = replaced(replaced(MOVING, "[geometry]", '[table.pull]\nfile = "pull.csv"
 STATIC_TABLE = replaced(replaced(PLAIN, "[geometry]", '[table.pull]\nfile = "steps.csv"\n\n[geometry]'),
                         '"(stretch - 1)*x"', '"pull(stretch) * x"')
 CLOUD = replaced(PLAIN, BOX, POINTS)
+FIELDS = replaced(replaced(PLAIN, 'on = ["left", "right", "bottom", "top"]', 'on = "all"'), 'on = "right"', 'on = "all"')
+FIELDS = replaced(replaced(FIELDS + SET.format(name="all", where="x > -1 m"), "[material", '[field.part]\nfile = "rows.csv"\n\n[material'), "(stretch - 1)*x", "(stretch - 1)*part")
 MESH = replaced(PLAIN, BOX, 'mesh = { file = "sheet.msh", unit = "mm", thickness = "10 mm" }')
 SOLID = replaced(BLOCK, BLOCK_BOX, 'surface = { file = "block.stl", unit = "mm", spacing = "5 mm" }')
 
@@ -185,7 +187,7 @@ MISTAKES = [
     ("a table called sin", replaced(TABLE, "pull(t)", "t / 1 s"), "[table.pull]", "[table.sin]", "[table.sin]", '"sin" is a function'),
     ("a table called mm", replaced(TABLE, "pull(t)", "t / 1 s"), "[table.pull]", "[table.mm]", "[table.mm]", '"mm" is a unit'),
     ("a table called dx", replaced(TABLE, "pull(t)", "t / 1 s"), "[table.pull]", "[table.dx]", "[table.dx]", '"dx" is a length'),
-    ("a hyphen", TABLE, "[table.pull]", "[table.my-pull]", "[table.my-pull]", "which formulas could not call"),
+    ("a hyphen", TABLE, "[table.pull]", "[table.my-pull]", "[table.my-pull]", "which formulas could not use"),
     ("unknown table", TABLE, "pull(t)", "pul(t)", "displacement", 'did you mean "pull"?'),
     ("a table without argument", TABLE, "pull(t)", "pull", "displacement", '"pull" is a table'),
     ("one column name twice", TABLE, 'file = "pull.csv"', 'file = "twins.csv"\nargument = "t"', 'file = "twins.csv"',
@@ -215,6 +217,12 @@ MISTAKES = [
     ("points without a thickness", CLOUD, ', thickness = "10 mm"', "", "points =", "thickness: missing"),
     ("points and a box", CLOUD, POINTS, POINTS + "\n" + BOX, "points = {", "given together with"),
     ("bonds of points on a lattice", CLOUD, POINTS, POINTS + '\nbonds = "lattice"', "bonds =", 'expected "listed"'),
+    ("no file of a field", FIELDS, 'file = "rows.csv"', 'file = "row.csv"', "file =", "row.csv: there is no such file"),
+    ("a field of a taken name", FIELDS, "[field.part]", "[field.x]", "[field.x]", '"x" is a variable in formulas'),
+    ("a field misspelt", FIELDS, "(stretch - 1)*part", "(stretch - 1)*prt", "displacement", 'did you mean "part"?'),
+    ("a field in another dimension", FIELDS, "(stretch - 1)*part", "(stretch - 1)*part*part", "displacement", 'the field part gives a length ("part [mm]")'),
+    ("two rows at one place", FIELDS, 'file = "rows.csv"', 'file = "again.csv"', "file =", "again.csv:402: the point at (-0.075, -0.095) m stands in line 4 already"),
+    ("a point without a row", FIELDS, 'file = "rows.csv"', 'file = "few.csv"', "displacement", "the field part has no value at ("),
     ("no file of a mesh", MESH, "sheet.msh", "shet.msh", "mesh =", "shet.msh: there is no such file"),
     ("points for a mesh", MESH, "sheet.msh", "sheet.csv", "mesh =", 'sheet.csv:1: found "x"; expected $MeshFormat'),
     ("an older mesh", MESH, "sheet.msh", "older.msh", "mesh =", 'older.msh:2: in $MeshFormat: found version "2.2" of the format MSH; expected 4.1'),
@@ -285,6 +293,11 @@ class WrongInput(ProgramTest):
         self.write("unit.csv", "t [sec],u [mm]\n0,0\n1,1\n")
         self.write("twins.csv", "t [ms],t [s],u [mm]\n0,0,0\n4,4,1\n")
         self.write("semicolons.csv", "t [ms];u [mm]\n0;0\n4;1\n")
+        places = [(-95 + 10 * i, -95 + 10 * j) for j in range(20) for i in range(20)]
+        rows = ["x [mm],y [mm],part [mm]\n", *(f"{x},{y},{x}\n" for x, y in places)]
+        self.write("rows.csv", "".join(rows))
+        self.write("few.csv", "".join(rows[:-1]))
+        self.write("again.csv", "".join(rows + rows[3:4]))
         self.write("sheet.msh", squares(20, 10))
         self.write("older.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n")
         self.write("block.stl", box_stl(40, 20, 30))
@@ -314,7 +327,7 @@ class WrongInput(ProgramTest):
 
     def test_the_cases_are_right_without_the_mistake(self):
         for name, text in {"plain": PLAIN + EXPECT, "hole": HOLE + FIELD, "moving": MOVING, "table": TABLE,
-                           "steps": STATIC_TABLE, "mesh": MESH, "solid": SOLID}.items():
+                           "steps": STATIC_TABLE, "mesh": MESH, "solid": SOLID, "fields": FIELDS}.items():
             self.command("check", self.write(f"{name}.toml", text))
 
     def test_three_dimensions_have_no_membrane(self):
