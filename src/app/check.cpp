@@ -121,9 +121,9 @@ void print_cost(const Simulation& simulation) {
                stable_step(*simulation.model, *simulation.constraints, rest));
   }
   const TimeEstimate time = time_estimate(simulation);
-  fmt::print("# time: about {} on {} ({:.3g} {} of {:.2g} ms)\n",
-             duration_text(time.total_s()), count_text(omp_get_max_threads(), "thread"), time.evaluations,
-             time.unit, 1e3 * time.evaluation_s);
+  fmt::print("# time: about {} on {} ({:.3g} {} of {:.2g} ms)\n", duration_text(time.total_s()),
+             count_text(omp_get_max_threads(), "thread"), time.evaluations, time.unit,
+             1e3 * time.evaluation_s);
   fmt::print("# memory: about {}\n", bytes_text(memory_estimate(simulation.input)));
   fmt::print("# disk: up to {}\n", bytes_text(output_estimate(simulation)));
 }

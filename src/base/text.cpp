@@ -14,6 +14,7 @@ std::string bytes_text(double bytes) {
 
 std::string duration_text(double seconds) {
   constexpr double kMinute = 60, kHour = 3600, kDay = 86400, kYear = 365 * kDay;
+  if (seconds < 0.1) return fmt::format("{:.1g} s", seconds);
   if (seconds < 10) return fmt::format("{:.1f} s", seconds);
   if (seconds < 90) return fmt::format("{:.0f} s", seconds);
   if (seconds < 90 * kMinute) return fmt::format("{:.0f} min", seconds / kMinute);

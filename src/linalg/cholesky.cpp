@@ -10,7 +10,8 @@
 
 // One BLAS or another is behind the factors; OpenBLAS with threads would use them as it likes.
 extern "C" void openblas_set_num_threads(int threads) __attribute__((weak));
-// Scotch goes on with its random numbers: a second ordering would depend on the first.
+// Scotch orders with all cores, in another way each time, unless told not to; and it goes on with its random
+// numbers, so that a second ordering would depend on the first.
 extern "C" void SCOTCH_randomReset() __attribute__((weak));
 
 namespace riven {
@@ -66,13 +67,15 @@ struct SparseCholesky::Mumps {
   }
   void check(const char* what) const {
     if (info(1) >= 0) return;
-    throw FactorFailure(fmt::format("{}: MUMPS gave up with code {} ({}){}", what, info(1), info(2),
-                                    info(1) == -13 ? ": not enough memory" : ""));
+    throw FactorFailure(
+        fmt::format("{}: MUMPS gave up with code {} ({}){}", what, info(1), info(2),
+                    info(1) == -13 ? ": not enough memory; dynamic relaxation takes less" : ""));
   }
 };
 
 SparseCholesky::SparseCholesky() : mumps_(std::make_unique<Mumps>()) {
   if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
+  setenv("SCOTCH_PTHREAD_NUMBER", "1", 1);  // NOLINT(concurrency-mt-unsafe): before any ordering
   mumps_->id.sym = kPositiveDefinite;
   mumps_->id.par = 1;
   mumps_->id.comm_fortran = kWorld;

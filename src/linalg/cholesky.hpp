@@ -25,7 +25,7 @@ class SparseCholesky {
   SparseCholesky(const SparseCholesky&) = delete;
   SparseCholesky& operator=(const SparseCholesky&) = delete;
 
-  /// Finds an ordering for the pattern, which must stay where it is. Throws FactorFailure.
+  /// Finds an ordering for the pattern. Throws FactorFailure.
   void analyse(const SymmetricMatrix& pattern);
   /// What a factorisation takes, known from `analyse`.
   [[nodiscard]] double flops() const;

@@ -74,7 +74,7 @@ void Lps::tangent(std::span<const double> u, std::size_t first, std::size_t last
       at += dimension;
     });
     hessian.noalias() += (constants_.kappa * volume) * gradient * gradient.transpose();
-    add_family_block(i, ends, gradient, hessian, to);
+    add_family_block(i, ends, {}, hessian, to);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "base/error.hpp"
 
@@ -112,11 +113,12 @@ void PointModel::add_family_block(std::size_t point, std::span<const End> ends,
 /// over g, which itself turns, so that the pull on it adds to the second derivative by the angle.
 void PointModel::move_to_inclusions(std::span<const End> ends, const Eigen::VectorXd& gradient,
                                     std::vector<std::size_t>& dofs, Eigen::MatrixXd& block) const {
+  std::set<std::size_t> touched;  // inclusions
+  for (const End end : ends)
+    if (is_surface(end)) touched.insert(body_.interface[end - body_.size()].inclusion);
   const Eigen::Index rows = block.rows();
-  Eigen::MatrixXd moves =
-      Eigen::MatrixXd::Zero(rows, rows + 3 * static_cast<Eigen::Index>(inclusions_.size()));
+  Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(rows, rows + 3 * static_cast<Eigen::Index>(touched.size()));
   Eigen::VectorXd turning = Eigen::VectorXd::Zero(moves.cols());
-  const Eigen::Index first = rows;  // column of the inclusions' entries
   for (Eigen::Index r = 0; r < rows; ++r) moves(r, r) = 1;
   for (std::size_t n = 0; n < ends.size(); ++n) {
     if (!is_surface(ends[n])) continue;
@@ -124,7 +126,7 @@ void PointModel::move_to_inclusions(std::span<const End> ends, const Eigen::Vect
     const Inclusion& inclusion = inclusions_[bond.inclusion];
     const Eigen::Vector2d lever = inclusion.rotation * arm(bond) / inclusion.gyration;
     const auto at = static_cast<Eigen::Index>(2 * n), row = at + 2,
-               column = first + 3 * static_cast<Eigen::Index>(bond.inclusion);
+               column = rows + 3 * std::distance(touched.begin(), touched.find(bond.inclusion));
     moves.block<2, 2>(row, row).setZero();
     moves.block<2, 2>(row, column).setIdentity();
     moves.block<2, 1>(row, column + 2) = Eigen::Vector2d(-lever.y(), lever.x());
@@ -136,7 +138,8 @@ void PointModel::move_to_inclusions(std::span<const End> ends, const Eigen::Vect
   for (std::size_t n = 0; n < ends.size(); ++n)
     if (is_surface(ends[n]))
       std::copy_n(dofs.begin(), 2, dofs.begin() + static_cast<std::ptrdiff_t>(2 * n + 2));
-  for (std::size_t entry = inclusion_dof(0); entry < this->dofs(); ++entry) dofs.push_back(entry);
+  for (const std::size_t inclusion : touched)
+    for (std::size_t entry = 0; entry < 3; ++entry) dofs.push_back(inclusion_dof(inclusion) + entry);
 }
 
 void PointModel::add_row(End end, double row, std::span<double> bound) const {

@@ -62,7 +62,8 @@ class PointModel : public Model {
   /// Adds a force (N) on a surface point to the force on its inclusion.
   void push_inclusion(End surface, const Eigen::Vector2d& pull, std::span<double> force) const;
   /// Appends the tangent block of a family, from the first and second derivatives of its energy by the
-  /// components of its deformed bonds, bond after bond (N, N/m). `ends`: of the bonds.
+  /// components of its deformed bonds, bond after bond (N, N/m). `ends`: of the bonds. The first derivatives
+  /// count only where bonds end on inclusions.
   void add_family_block(std::size_t point, std::span<const End> ends, const Eigen::VectorXd& gradient,
                         const Eigen::MatrixXd& hessian, TangentBlocks& to) const;
   /// Adds a row bound (N/m) of a bond's end to that of the entries that move it.

@@ -145,6 +145,8 @@ void Recorder::progressed(const SolverProgress& progress) {
 
 void Recorder::reached(const State& state, const Constraints& constraints, bool output) {
   last_ = state;
+  last_model_ = {};
+  simulation_.model->save(last_model_);
   evaluations_ = state.evaluations;
   iterations_ = state.iterations;
   last_written_ = false;
@@ -203,8 +205,12 @@ void Recorder::add_state(double parameter, const std::vector<double>& values) {
   state_values_.insert(state_values_.end(), values.begin(), values.end());
 }
 
+/// What the model has gone through since, such as bonds that broke on the way to a state that was not
+/// reached, is no part of that state.
 void Recorder::keep_last() {
-  if (!last_written_) write_fields();
+  if (last_written_) return;
+  if (!last_model_.arrays.empty()) simulation_.model->restore(last_model_);
+  write_fields();
 }
 
 EnergySummary Recorder::energy() const {

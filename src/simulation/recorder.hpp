@@ -66,6 +66,7 @@ class Recorder final : public Observer {
   HistoryWriter history_, energy_;
   Collection collection_;
   State last_;
+  Snapshot last_model_;              // what the model remembered then
   std::vector<double> last_values_;  // of the probes
   long evaluations_ = 0, iterations_ = 0;
   bool last_written_ = true;

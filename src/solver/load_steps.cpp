@@ -27,7 +27,7 @@ LoadSteps::LoadSteps(Model& model, Constraints& constraints, const LoadStepSetti
       observer_(observer) {
   state_.u.assign(model.dofs(), 0.0);
   state_.parameter = settings.start;
-  start_ = before_ = state_.u;
+  start_ = before_ = overloaded_ = state_.u;
 }
 
 State LoadSteps::run(const Snapshot* from) {
@@ -147,6 +147,7 @@ void LoadSteps::arrive() {
     return cut();
   }
   broken_ = true;
+  overloaded_ = state_.u;
   state_.energy.strain -= broken;
   state_.energy.dissipated += broken;
   begin_iterations();
@@ -210,9 +211,13 @@ void LoadSteps::retreat(const std::string& failure) {
   ++method_;
   observer_.remarked(fmt::format("load step to {:.6g} failed ({}); going on with {} for this step", next_,
                                  failure, method().name()));
-  state_.u = start_;
-  predict(next_);
-  constraints_.apply(state_.u);
+  if (broken_) {
+    state_.u = overloaded_;
+  } else {
+    state_.u = start_;
+    predict(next_);
+    constraints_.apply(state_.u);
+  }
   begin_iterations();
 }
 

@@ -51,6 +51,7 @@ class LoadSteps {
     each("steps.good_steps", self.good_steps_);
     each("steps.method", self.method_);
     each("steps.broken", self.broken_);
+    each("steps.overloaded", self.overloaded_);
   }
   [[nodiscard]] Snapshot save() const;
   void restore(const Snapshot& from);
@@ -87,9 +88,10 @@ class LoadSteps {
   long iteration_ = 0;                         // of this load step
   double increment_ = 0;                       // largest load step, as it is cut now
   int cuts_ = 0;
-  int good_steps_ = 0;      // since the last cut
-  std::size_t method_ = 0;  // the one that works on this load step
-  bool broken_ = false;     // bonds have broken in this load step
+  int good_steps_ = 0;              // since the last cut
+  std::size_t method_ = 0;          // the one that works on this load step
+  bool broken_ = false;             // bonds have broken in this load step
+  std::vector<double> overloaded_;  // state of equilibrium in which they last did
 };
 
 }  // namespace riven

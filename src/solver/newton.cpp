@@ -14,8 +14,9 @@ namespace riven {
 namespace {
 
 constexpr long kMostIterations = 30;  // of a load step
-// Shifts of the tangent, in row bounds: far below the softest motion of a body of a thousand points a side
-// (about 1e-7), far above rounding; then, from the least that may cure an indefinite tangent.
+// Shifts of the tangent, in row bounds: far below the softest motion of a square of a thousand points a side
+// (about 1e-7; a long beam's comes near, and then needs more iterations), far above rounding; then, from the
+// least that may cure an indefinite tangent.
 constexpr double kLeastShift = 1e-10, kFirstShift = 1e-4, kShiftFactor = 4, kLargestShift = 10;
 // A row without bonds gets this part of the largest bound.
 constexpr double kLeastBound = 1e-6;
@@ -56,8 +57,7 @@ Iteration Newton::iterate(State& state, long number) {
   if (number == kMostIterations)
     return {Iteration::Outcome::failed,
             fmt::format("not converged in {} iterations: {}", number, forces_.unrest(tolerance_))};
-  if (!factor(state))
-    return {Iteration::Outcome::failed, "the tangent has entries that are no finite numbers"};
+  if (!factor(state)) return {Iteration::Outcome::failed, "no shift makes the tangent positive definite"};
   std::vector<double> step(state.u.size());
   system_->solve(forces_.values(), step);
   const std::string unrest = forces_.unrest(tolerance_);

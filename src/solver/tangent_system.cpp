@@ -8,8 +8,8 @@ namespace riven {
 
 namespace {
 
-constexpr std::size_t kBatch = 512;  // parts of the tangent that are in memory at a time
-constexpr std::size_t kPiece = 16;   // of those, how many a thread takes
+constexpr std::size_t kBatch = 128;  // parts of the tangent that are in memory at a time
+constexpr std::size_t kPiece = 4;    // of those, how many a thread takes
 // Rows are dealt to so many shares, whatever the number of threads: neighbours, which come in the same
 // blocks, to different ones.
 constexpr int kShares = 64;

@@ -80,7 +80,7 @@ TEST(Estimate, DiskGrowsWithStatesPointsAndFields) {
 }
 
 TEST(Estimate, SaysDurationsInWordsOfTheirSize) {
-  for (const auto& [seconds, words] : std::vector<std::pair<double, std::string>>{{0.04, "0.0 s"},
+  for (const auto& [seconds, words] : std::vector<std::pair<double, std::string>>{{0.04, "0.04 s"},
                                                                                   {2.34, "2.3 s"},
                                                                                   {85, "85 s"},
                                                                                   {600, "10 min"},
