@@ -64,7 +64,7 @@ struct Factors {
 /// of two.
 Factors factors(const Case& input) {
   if (input.solver.method != "newton") return {};
-  constexpr double kFlopsPerSecond = 1.5e10, kEntriesPerSecond = 1e8;  // of one core
+  constexpr double kFlopsPerSecond = 4e10, kEntriesPerSecond = 2e8;  // of one core
   const GeometryInput& geometry = input.geometry;
   const double points = body_points(geometry), horizon = geometry.horizon / geometry.spacing;
   const double reach = (input.model.kind == "pmb" ? 1 : 2) * horizon;
