@@ -137,9 +137,12 @@ void LoadSteps::arrive() {
   model_.save(model);
   const EnergyBalance energy = state_.energy;
   const WorkIntegral work = work_;
-  balance();
+  const double lost = balance();
   const double broken = break_overloaded();
-  if (!(broken > 0)) return accept();
+  if (!(broken > 0)) {
+    if (!broken_) tell_jump(lost);
+    return accept();
+  }
   if (cuts_ < kCutsForBonds && !broken_) {
     model_.restore(model);
     state_.energy = energy;
@@ -229,8 +232,8 @@ void LoadSteps::retreat(const std::string& failure) {
                   state_.parameter, state_.steps + 1, 1 << cuts_, failure, model_.remedies()));
 }
 
-/// Energies of the new state.
-void LoadSteps::balance() {
+/// Energies of the new state. Returns what the body lost, more than the loads took (J).
+double LoadSteps::balance() {
   EnergyBalance& energy = state_.energy;
   const double before = energy.strain - energy.external_work;
   energy.strain = model_.strain_energy(state_.u);
@@ -240,13 +243,17 @@ void LoadSteps::balance() {
                              method().forces().least_energy()});
   const double lost = before - (energy.strain - energy.external_work);
   if (broken_) energy.dissipated += lost;
-  if (model_.conservative() && !broken_ && state_.steps >= kStepsOfPoorBalance &&
-      lost > kJump * energy.largest)
-    observer_.remarked(
-        fmt::format("in the load step to {:.6g} the body lost {:.2g} % of its energy: it has jumped to "
-                    "another equilibrium (snapping, "
-                    "wrinkling), and what it does in between depends on inertia, which statics leaves out",
-                    next_, 100 * lost / energy.largest));
+  return lost;
+}
+
+void LoadSteps::tell_jump(double lost) {
+  const double part = lost / state_.energy.largest;
+  if (!model_.conservative() || state_.steps < kStepsOfPoorBalance || part <= kJump) return;
+  observer_.remarked(
+      fmt::format("in the load step to {:.6g} the body lost {:.2g} % of its energy: it has jumped to another "
+                  "equilibrium (snapping, "
+                  "wrinkling), and what it does in between depends on inertia, which statics leaves out",
+                  next_, 100 * part));
 }
 
 void LoadSteps::report() const {

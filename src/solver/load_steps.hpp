@@ -70,7 +70,8 @@ class LoadSteps {
   void cut();
   void retreat(const std::string& failure);
   [[noreturn]] void give_up(const std::string& failure) const;
-  void balance();
+  double balance();
+  void tell_jump(double lost);
   void report() const;
 
   Model& model_;

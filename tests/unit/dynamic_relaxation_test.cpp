@@ -4,50 +4,16 @@
 
 #include <algorithm>
 
-#include "support/bodies.hpp"
-#include "support/laws.hpp"
-#include "support/loads.hpp"
-#include "support/states.hpp"
+#include "support/static_sheet.hpp"
 
 namespace riven::testing {
 namespace {
 
-constexpr double kStabilisation = 4;
-
-struct Log : Observer {
-  void reached(const State& state, const Constraints&, bool output) override {
-    steps.push_back(state.parameter);
-    if (output) outputs.push_back(state.parameter);
-  }
-  void remarked(const std::string& remark) override { remarks.push_back(remark); }
-  std::vector<double> steps, outputs;
-  std::vector<std::string> remarks;
-};
-
-/// A sheet with a hole and a held inclusion.
-struct Problem {
-  explicit Problem(const LawCase& law, const FaceLoads& loads = planar(), Faces mirrored = all_edges())
-      : membrane(make_lattice_body(sheet(20, 20, 0.05, mirrored,
-                                         {{Disc{{0.2, 0.15, 0}, 0.13}}, {}, {Disc{{-0.2, -0.2, 0}, 0.1}}})),
-                 law.material(), kStabilisation),
-        constraints(constrain(membrane, loads)) {}
-
-  State solve(const LoadStepSettings& settings) { return relax(membrane, constraints, settings, log); }
-
-  Membrane membrane;
-  Constraints constraints;
-  Log log;
-};
-
-double distance(const State2& a, const State2& b) {
-  double worst = 0;
-  for (std::size_t e = 0; e < a.size(); ++e) worst = std::max(worst, std::abs(a[e] - b[e]));
-  return worst;
-}
+constexpr double kStabilisation = 4;  // of StaticSheet too
 
 TEST(DynamicRelaxation, ReachesEquilibriumWithinItsTolerance) {
   for (const LawCase& law : unit_laws()) {
-    Problem problem(law);
+    StaticSheet problem(relax, law);
     const State state = problem.solve({.targets = {1.1, 1.25}, .tolerance = 1e-6});
     EXPECT_EQ(problem.log.outputs, (std::vector<double>{1.1, 1.25})) << law.name;
     problem.constraints.set_parameter(1.25);
@@ -68,7 +34,7 @@ TEST(DynamicRelaxation, ResultDoesNotDependOnTheIncrement) {
   std::vector<State2> results;
   std::vector<double> forces;
   for (const double increment : {0.1, 0.05}) {
-    Problem problem(unit_laws()[1]);
+    StaticSheet problem(relax, unit_laws()[1]);
     results.push_back(problem.solve({.targets = {1.4}, .increment = increment, .tolerance = 1e-7}).u);
     forces.push_back(problem.constraints.reaction(1)[0]);
   }
@@ -78,7 +44,7 @@ TEST(DynamicRelaxation, ResultDoesNotDependOnTheIncrement) {
 }
 
 TEST(DynamicRelaxation, CutsStepsThatAreTooLarge) {
-  Problem small(unit_laws()[0]), large(unit_laws()[0]);
+  StaticSheet small(relax, unit_laws()[0]), large(relax, unit_laws()[0]);
   const State2 expected = small.solve({.targets = {1.8}, .increment = 0.05, .tolerance = 1e-7}).u;
   // One step of 0.8 from the affine motion about the inclusion folds the sheet or takes too long.
   const State state =
@@ -91,7 +57,7 @@ TEST(DynamicRelaxation, CutsStepsThatAreTooLarge) {
 
 TEST(DynamicRelaxation, GivesUpOnAnImpossibleLoad) {
   // The sheet is pressed to nothing: it folds long before.
-  Problem problem(unit_laws()[0], equibiaxial());
+  StaticSheet problem(relax, unit_laws()[0], equibiaxial());
   try {
     problem.solve({.targets = {0.9, 0.01}, .tolerance = 1e-3, .max_iterations = 500});
     FAIL() << "no failure";
@@ -111,9 +77,9 @@ TEST(DynamicRelaxation, StandsStillWhereTheLoadsDo) {
   Membrane membrane(make_lattice_body(sheet(20, 10, 0.05, Faces(0b0011))), unit_laws()[0].material(),
                     kStabilisation);
   Constraints constraints = constrain(membrane, edges(path, Faces(0b0011), true));
-  Log log;
+  StaticLog log;
   const State state = relax(membrane, constraints, {.targets = {1.3, 1.6}}, log);
-  Log again;
+  StaticLog again;
   const State to_plateau = relax(membrane, constraints, {.targets = {1.3}}, again);
   EXPECT_TRUE(log.remarks.empty());
   // Each of the three steps of the plateau asks once whether it is in equilibrium.
@@ -125,7 +91,7 @@ TEST(DynamicRelaxation, ReportsAFoldInsteadOfAnEquilibrium) {
   // The forces balance then, too.
   Membrane membrane(make_lattice_body(sheet(20, 20, 0.05, Faces(0b0011))), unit_laws()[0].material(), 0);
   Constraints constraints = constrain(membrane, uniaxial());
-  Log log;
+  StaticLog log;
   EXPECT_THROW(relax(membrane, constraints, {.targets = {0.8, 0.4}, .max_iterations = 2000}, log),
                SolverFailure);
   EXPECT_EQ(log.outputs, (std::vector<double>{0.8}));
@@ -142,7 +108,7 @@ TEST(DynamicRelaxation, KeepsAStabilisedSheetFromFoldingUnderCompression) {
   Membrane membrane(make_lattice_body(sheet(20, 20, 0.05, Faces(0b0011))), unit_laws()[0].material(),
                     kStabilisation);
   Constraints constraints = constrain(membrane, uniaxial());
-  Log log;
+  StaticLog log;
   const State state = relax(membrane, constraints, {.targets = {0.8, 0.4}, .max_iterations = 2000}, log);
   // Every unit square of neighbours keeps its orientation and, in this homogeneous state, its shape.
   const Lattice& lattice = membrane.body().on_lattice()->lattice;
@@ -165,7 +131,7 @@ TEST(DynamicRelaxation, StretchesAUniformSheetExactly) {
   const LawCase law = unit_laws()[1];
   Membrane membrane(make_lattice_body(sheet(16, 12, 0.05, all_edges())), law.material(), kStabilisation);
   Constraints constraints = constrain(membrane, planar());
-  Log log;
+  StaticLog log;
   const State state = relax(membrane, constraints, {.targets = {1.7}}, log);
   const State2 exact = affine_state(membrane, Eigen::Matrix2d{{1.7, 0}, {0, 1}});
   EXPECT_LT(distance(state.u, exact), 1e-12);
@@ -175,7 +141,7 @@ TEST(DynamicRelaxation, StretchesAUniformSheetExactly) {
 // A body that nothing loads has no reaction to compare with: rest must count as equilibrium all the same.
 TEST(DynamicRelaxation, LeavesABodyWithoutLoadAtRest) {
   const FaceLoads still = edges([](double) { return Eigen::Matrix2d::Identity(); }, all_edges(), false);
-  Problem problem(unit_laws()[0], still);
+  StaticSheet problem(relax, unit_laws()[0], still);
   const State state = problem.solve({.targets = {1.1, 1.3}, .max_iterations = 200});
   EXPECT_LE(largest(state.u), 1e-15);
   EXPECT_LE(std::abs(state.energy.error()), 1e-3);
@@ -188,7 +154,7 @@ TEST(DynamicRelaxation, CarriesAFreeSheetWithOneEdge) {
   loads[0] = FaceLoad{.displacement = {[](const Point&, double p) { return p - 1; },
                                        [](const Point&, double) { return 0.0; }},
                       .load = 0};
-  Problem problem(unit_laws()[0], loads, Faces(0b0001));
+  StaticSheet problem(relax, unit_laws()[0], loads, Faces(0b0001));
   const State state = problem.solve({.targets = {1.2}});
   // Converged to forces of strains of 1e-11 in each bond, which add up along the sheet as in a
   // cantilever: 1.3e-8 at its end.

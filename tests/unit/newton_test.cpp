@@ -3,58 +3,21 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include <algorithm>
+#include <cmath>
 
 #include "peridynamics/lps.hpp"
 #include "solver/dynamic_relaxation.hpp"
-#include "support/bodies.hpp"
-#include "support/laws.hpp"
-#include "support/loads.hpp"
-#include "support/states.hpp"
+#include "support/pulled_point.hpp"
+#include "support/static_sheet.hpp"
 
 namespace riven::testing {
 namespace {
 
-struct Log : Observer {
-  void progressed(const SolverProgress& progress) override {
-    if (progress.iteration == 0) residuals.emplace_back();
-    residuals.back().push_back(progress.residual);
-  }
-  void reached(const State& state, const Constraints&, bool) override { steps.push_back(state.parameter); }
-  void remarked(const std::string& remark) override { remarks.push_back(remark); }
-  std::vector<std::vector<double>> residuals;  // of each load step
-  std::vector<double> steps;
-  std::vector<std::string> remarks;
-};
-
-/// A sheet with a hole and an inclusion.
-struct Problem {
-  explicit Problem(const LawCase& law = unit_laws()[1], const FaceLoads& loads = planar(),
-                   Faces mirrored = all_edges(), double stabilisation = 4)
-      : membrane(make_lattice_body(sheet(20, 20, 0.05, mirrored,
-                                         {{Disc{{0.2, 0.15, 0}, 0.13}}, {}, {Disc{{-0.2, -0.2, 0}, 0.1}}})),
-                 law.material(), stabilisation),
-        constraints(constrain(membrane, loads)) {}
-
-  State solve(const LoadStepSettings& settings) { return newton(membrane, constraints, settings, log); }
-
-  Membrane membrane;
-  Constraints constraints;
-  Log log;
-};
-
-double distance(const State2& a, const State2& b) {
-  double worst = 0;
-  for (std::size_t e = 0; e < a.size(); ++e) worst = std::max(worst, std::abs(a[e] - b[e]));
-  return worst;
-}
-
 TEST(Newton, ReachesTheStatesOfRelaxation) {
   for (const LawCase& law : unit_laws()) {
-    Problem by_newton(law), by_relaxation(law);
+    StaticSheet by_newton(newton, law), by_relaxation(relax, law);
     const State state = by_newton.solve({.targets = {1.2, 1.5}});
-    const State expected = relax(by_relaxation.membrane, by_relaxation.constraints,
-                                 {.targets = {1.2, 1.5}, .tolerance = 1e-8}, by_relaxation.log);
+    const State expected = by_relaxation.solve({.targets = {1.2, 1.5}, .tolerance = 1e-8});
     // Relaxation's tolerance times the softness of the slowest motion.
     EXPECT_LT(distance(state.u, expected.u), 1e-6) << law.name;
     EXPECT_NEAR(state.energy.strain / expected.energy.strain, 1, 1e-9) << law.name;
@@ -65,7 +28,7 @@ TEST(Newton, ReachesTheStatesOfRelaxation) {
 
 // The ratio of a residual to the square of the one before stays where it is, until rounding.
 TEST(Newton, ConvergesQuadratically) {
-  Problem problem;
+  StaticSheet problem(newton, unit_laws()[1]);
   static_cast<void>(problem.solve({.targets = {1.3}, .increment = 0.3, .tolerance = 1e-12}));
   const std::vector<double>& r = problem.log.residuals.back();
   ASSERT_GE(r.size(), 4U);
@@ -77,11 +40,56 @@ TEST(Newton, ConvergesQuadratically) {
   EXPECT_GT(orders.back(), 1.7);
 }
 
+// A residual within the tolerance is not enough: first guesses have one, and are off by 2e-3 in all, measured
+// without the step that must follow. It leaves about the square of that.
+TEST(Newton, TakesAStepThatIsWithinTheToleranceToo) {
+  StaticSheet loose(newton, unit_laws()[1]), tight(newton, unit_laws()[1]);
+  const State state = loose.solve({.targets = {1.4}, .increment = 0.05, .tolerance = 0.1});
+  const State exact = tight.solve({.targets = {1.4}, .tolerance = 1e-10});
+  EXPECT_LT(distance(state.u, exact.u), 1e-4 * largest(exact.u));  // measured 1.3e-5
+}
+
+/// E = sqrt(1 + z^2) with z = u[1] - 4 u[0]^2: a groove along a parabola, from whose sides Newton's whole
+/// steps lead away, z to -z^3.
+class Groove final : public PulledPoint {
+ public:
+  std::optional<Breakdown> internal_force(std::span<const double> u, std::span<double> force) override {
+    const double z = depth(u);
+    force[1] = -z / std::sqrt(1 + z * z);
+    force[0] = -8 * u[0] * force[1];
+    return std::nullopt;
+  }
+  [[nodiscard]] double strain_energy(std::span<const double> u) override {
+    return std::sqrt(1 + depth(u) * depth(u));
+  }
+  void stiffness_bound(std::span<const double>, std::span<double> bound) override { bound[0] = bound[1] = 1; }
+  [[nodiscard]] std::size_t tangent_parts() const override { return 1; }
+  void tangent(std::span<const double> u, std::size_t first, std::size_t last,
+               TangentBlocks& to) const override {
+    if (first == last) return;
+    to.dofs.push_back(1);
+    to.begin.push_back(to.dofs.size());
+    to.values.push_back(std::pow(1 + depth(u) * depth(u), -1.5));
+  }
+
+ private:
+  static double depth(std::span<const double> u) { return u[1] - 4 * u[0] * u[0]; }
+};
+
+TEST(Newton, HalvesStepsThatOvershoot) {
+  Groove groove;
+  Constraints constraints = pull_point();
+  StaticLog log;
+  const State state = newton(groove, constraints, {.targets = {2}, .increment = 1}, log);
+  EXPECT_NEAR(state.u[1], 4, 1e-8);
+  EXPECT_TRUE(log.remarks.empty());
+}
+
 TEST(Newton, StretchesAUniformSheetExactly) {
   const LawCase law = unit_laws()[1];
   Membrane membrane(make_lattice_body(sheet(16, 12, 0.05, all_edges())), law.material(), 4);
   Constraints constraints = constrain(membrane, planar());
-  Log log;
+  StaticLog log;
   const State state = newton(membrane, constraints, {.targets = {1.7}}, log);
   EXPECT_LT(distance(state.u, affine_state(membrane, Eigen::Matrix2d{{1.7, 0}, {0, 1}})), 1e-12);
 }
@@ -90,7 +98,7 @@ TEST(Newton, StretchesAUniformSheetExactly) {
 TEST(Newton, KeepsStillWhatNothingHolds) {
   Membrane membrane(make_lattice_body(sheet(20, 14, 0.05, Faces(0b0011))), unit_laws()[1].material(), 4);
   Constraints constraints = constrain(membrane, uniaxial());
-  Log log;
+  StaticLog log;
   const State state = newton(membrane, constraints, {.targets = {2}}, log);
   double mean = 0;
   for (const std::size_t i : membrane.body().points) mean += state.u[membrane.body().size() + i];
@@ -111,25 +119,21 @@ TEST(Newton, CarriesAFreeBlockWithOneEdge) {
   FaceLoads loads;
   loads[0] = FaceLoad{.displacement = {[](const Point&, double p) { return p - 1; }, {}, {}}, .load = 0};
   Constraints constraints = constrain(block, loads);
-  Log log;
+  StaticLog log;
   const State state = newton(block, constraints, {.targets = {1.05}}, log);
   for (const std::size_t i : block.body().points) EXPECT_NEAR(state.u[i], 0.05, 1e-9);
 }
 
 TEST(Newton, TakesSmallerStepsThenRelaxationThenGivesUp) {
-  Problem problem(unit_laws()[0], equibiaxial());
+  StaticSheet problem(newton, unit_laws()[0], equibiaxial());
   try {
     problem.solve({.targets = {0.9, 0.01}, .tolerance = 1e-3, .max_iterations = 500});
     FAIL() << "no failure";
   } catch (const SolverFailure& failure) {
     EXPECT_NE(std::string(failure.what()).find("no equilibrium beyond"), std::string::npos) << failure.what();
   }
-  const auto says = [&](const char* what) {
-    return std::any_of(problem.log.remarks.begin(), problem.log.remarks.end(),
-                       [&](const std::string& remark) { return remark.find(what) != std::string::npos; });
-  };
-  EXPECT_TRUE(says("going on with steps of"));
-  EXPECT_TRUE(says("going on with dynamic relaxation for this step"));
+  EXPECT_TRUE(problem.log.says("going on with steps of"));
+  EXPECT_TRUE(problem.log.says("going on with dynamic relaxation for this step"));
 }
 
 // A state that is no minimum of the energy is no goal: without stabilisation pressed rows of points fold, and
@@ -137,7 +141,7 @@ TEST(Newton, TakesSmallerStepsThenRelaxationThenGivesUp) {
 TEST(Newton, LeavesAnUnstablePath) {
   Membrane membrane(make_lattice_body(sheet(20, 20, 0.05, Faces(0b0011))), unit_laws()[0].material(), 0);
   Constraints constraints = constrain(membrane, uniaxial());
-  Log log;
+  StaticLog log;
   EXPECT_THROW(newton(membrane, constraints, {.targets = {0.8, 0.4}, .max_iterations = 2000}, log),
                SolverFailure);
   EXPECT_GT(log.steps.back(), 0.5);
@@ -145,8 +149,8 @@ TEST(Newton, LeavesAnUnstablePath) {
 }
 
 TEST(Newton, LeavesABodyWithoutLoadAtRest) {
-  Problem problem(unit_laws()[0],
-                  edges([](double) { return Eigen::Matrix2d::Identity(); }, all_edges(), false));
+  StaticSheet problem(newton, unit_laws()[0],
+                      edges([](double) { return Eigen::Matrix2d::Identity(); }, all_edges(), false));
   const State state = problem.solve({.targets = {1.1, 1.3}});
   EXPECT_LE(largest(state.u), 1e-12);
   EXPECT_TRUE(problem.log.remarks.empty());
@@ -156,7 +160,7 @@ TEST(Newton, HasTheSameBitsOnAnyNumberOfThreads) {
   std::vector<std::vector<double>> results;
   for (const int threads : {1, 2, 3}) {
     omp_set_num_threads(threads);
-    Problem problem;
+    StaticSheet problem(newton, unit_laws()[1]);
     results.push_back(problem.solve({.targets = {1.3}}).u);
   }
   omp_set_num_threads(1);

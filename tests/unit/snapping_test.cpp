@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "solver/dynamic_relaxation.hpp"
+#include "support/pulled_point.hpp"
 
-namespace riven {
+namespace riven::testing {
 namespace {
 
 /// E = x^2 (x - 2)^2 + (x - p)^2 / 2, where the load moves p = u[0] and x = u[1] is free. At rest in the well
@@ -14,10 +15,9 @@ namespace {
 /// at 2.
 /// `inspect` finds fault with x beyond `sound_to`, as it does with folded sheets: there the forces balance
 /// all the same.
-class DoubleWell final : public Model {
+class DoubleWell final : public PulledPoint {
  public:
   explicit DoubleWell(double sound_to = 10) : sound_to_(sound_to) {}
-  [[nodiscard]] std::size_t dofs() const override { return 2; }
   std::optional<Breakdown> internal_force(std::span<const double> u, std::span<double> force) override {
     const double x = u[1], pull = u[0] - x;
     force[0] = -pull;
@@ -28,27 +28,14 @@ class DoubleWell final : public Model {
     const double x = u[1], pull = u[0] - x;
     return x * x * (x - 2) * (x - 2) + pull * pull / 2;
   }
-  [[nodiscard]] bool conservative() const override { return true; }
-  void mass(std::span<double> mass) const override { mass[0] = mass[1] = 1; }
   void stiffness_bound(std::span<const double>, std::span<double> bound) override {
     bound[0] = 2;
     bound[1] = 30;  // 12 x^2 - 24 x + 8 + 2 stays below for x in [-0.5, 2.6]
   }
-  [[nodiscard]] double spacing() const override { return 1; }
   [[nodiscard]] std::optional<Breakdown> inspect(std::span<const double> u) override {
     if (u[1] <= sound_to_) return std::nullopt;
     return Breakdown{{0.25, 0.5, 0}, "unsound"};
   }
-  void move(std::span<double>, const std::array<std::array<double, 3>, 3>&, const Point&) const override {}
-  [[nodiscard]] std::vector<Point> positions() const override { return {Point{}}; }
-  [[nodiscard]] std::vector<Point> displacements(std::span<const double> u) const override {
-    return {Point{u[1], 0, 0}};
-  }
-  [[nodiscard]] std::vector<ModelField> fields(std::span<const double>) override { return {}; }
-  [[nodiscard]] Point place(std::size_t) const override { return {}; }
-  [[nodiscard]] std::vector<std::string> describe() const override { return {}; }
-  [[nodiscard]] std::size_t points() const override { return 1; }
-  [[nodiscard]] std::size_t bonds() const override { return 1; }
 
  private:
   double sound_to_;
@@ -67,8 +54,7 @@ struct Remarks : Observer {
 
 State pull_to(double end, Remarks& remarks, double sound_to = 10) {
   DoubleWell model(sound_to);
-  Constraints constraints(2, 1);
-  constraints.add({.slave = 0, .terms = {{[](const Point&, double p) { return p - 1; }, {}, 0, 1, 0}}});
+  Constraints constraints = pull_point();
   return relax(model, constraints, {.targets = {end}, .increment = 0.1, .tolerance = 1e-8}, remarks);
 }
 
@@ -108,4 +94,4 @@ TEST(Snapping, IntoAnUnsoundStateIsNoSuccess) {
 }
 
 }  // namespace
-}  // namespace riven
+}  // namespace riven::testing

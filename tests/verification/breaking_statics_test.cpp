@@ -10,9 +10,8 @@
 #include "peridynamics/pmb.hpp"
 #include "solver/dynamic_relaxation.hpp"
 #include "solver/newton.hpp"
-#include "support/bodies.hpp"
-#include "support/loads.hpp"
 #include "support/pmb_bodies.hpp"
+#include "support/static_sheet.hpp"
 
 namespace riven::testing {
 namespace {
@@ -37,7 +36,6 @@ struct Log : Observer {
   std::vector<Step> steps;
 };
 
-using StaticSolver = State (*)(Model&, Constraints&, const LoadStepSettings&, Observer&, const Snapshot*);
 constexpr std::array<StaticSolver, 2> kSolvers{&newton, &relax};
 
 TEST(StaticsWithBreakingBonds, SnapABarAtItsCriticalStretch) {
