@@ -33,6 +33,23 @@ std::size_t Body::family_size(std::size_t point) const {
   return size;
 }
 
+void Body::mark(std::vector<std::uint8_t>& values, std::span<const std::size_t> numbers,
+                std::uint8_t value) const {
+  values.resize(size(), 0);
+  for (const std::size_t number : numbers) values[points[number]] = value;
+  for (const GhostPoint& ghost : ghosts) values[ghost.point] = values[ghost.master];
+}
+
+void Body::cut(std::size_t point, std::size_t bond) {
+  if (auto* on = std::get_if<LatticeBonds>(&bonds)) return on->bonds.cut(on->stencil, bond, point);
+  auto& list = std::get<ListedBonds>(bonds);
+  const std::size_t end = list.neighbour[bond];
+  const auto first = list.neighbour.begin() + static_cast<std::ptrdiff_t>(list.begin[end]);
+  const auto last = list.neighbour.begin() + static_cast<std::ptrdiff_t>(list.begin[end + 1]);
+  list.cut(point, bond);
+  list.cut(end, static_cast<std::size_t>(std::lower_bound(first, last, point) - list.neighbour.begin()));
+}
+
 double Body::face_area(std::size_t face) const {
   double area = thickness;
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(dimension); ++axis)
@@ -42,7 +59,8 @@ double Body::face_area(std::size_t face) const {
 
 std::size_t Body::bytes() const {
   std::size_t sum = size() * (sizeof(PointKind) + sizeof(double) + sizeof(std::uint32_t)) + size() / 8 +
-                    points.size() * sizeof(std::size_t) + interface.size() * sizeof(InterfaceBond);
+                    material.size() + unbreakable.size() + points.size() * sizeof(std::size_t) +
+                    interface.size() * sizeof(InterfaceBond);
   if (const LatticeBonds* on = on_lattice()) return sum + size() * on->stencil.size() / 8;
   const auto& list = std::get<ListedBonds>(bonds);
   return sum + size() * (sizeof(Point) + sizeof(std::size_t)) +

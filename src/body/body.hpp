@@ -62,6 +62,11 @@ struct ListedBonds {
     const std::size_t n = bond - begin[point];
     return (masks[begin[point] / 8 + point + n / 8] >> (n % 8) & 1U) != 0;
   }
+  /// Takes a bond out, seen from this end.
+  void cut(std::size_t point, std::size_t bond) {
+    const std::size_t n = bond - begin[point];
+    masks[begin[point] / 8 + point + n / 8] &= static_cast<std::uint8_t>(~(1U << (n % 8)));
+  }
 };
 
 /// Material points with bonds between them, on a lattice or listed. Fields have `size()` entries: one per
@@ -77,7 +82,11 @@ struct Body {
   std::vector<double> volume;               // m^3; 0 unless body
   std::vector<std::uint32_t> whole_family;  // bonds of a body point if no crack had cut any
   std::vector<bool> complete;               // nothing is missing in a body point's family
-  std::vector<std::size_t> points;          // body points in storage order
+  // Of stored points, for ghosts that of their master; empty: all points have material 0, all bonds may
+  // break.
+  std::vector<std::uint8_t> material;
+  std::vector<std::uint8_t> unbreakable;  // whether no bond of the point ever breaks
+  std::vector<std::size_t> points;        // body points in storage order
   std::vector<GhostPoint> ghosts;
   std::vector<InterfaceBond> interface;                // sorted by point
   std::vector<std::vector<std::size_t>> rigid_points;  // of each inclusion
@@ -85,28 +94,54 @@ struct Body {
 
   [[nodiscard]] std::size_t size() const { return kind.size(); }
   [[nodiscard]] const LatticeBonds* on_lattice() const { return std::get_if<LatticeBonds>(&bonds); }
+  /// The bits of the bonds.
+  [[nodiscard]] const std::vector<std::uint8_t>& masks() const {
+    const LatticeBonds* on = on_lattice();
+    return on != nullptr ? on->bonds.bytes() : std::get<ListedBonds>(bonds).masks;
+  }
+  [[nodiscard]] std::vector<std::uint8_t>& masks() {
+    auto* on = std::get_if<LatticeBonds>(&bonds);
+    return on != nullptr ? on->bonds.bytes() : std::get<ListedBonds>(bonds).masks;
+  }
   /// Undeformed position (m) of a stored point.
   [[nodiscard]] Point position(std::size_t point) const;
   /// Bonds of a point that end on inclusions.
   [[nodiscard]] std::span<const InterfaceBond> interface_of(std::size_t point) const;
   /// Bonds of a point, those to inclusions included.
   [[nodiscard]] std::size_t family_size(std::size_t point) const;
+  [[nodiscard]] std::size_t material_of(std::size_t point) const {
+    return material.empty() ? 0 : material[point];
+  }
+  [[nodiscard]] bool is_unbreakable(std::size_t point) const {
+    return !unbreakable.empty() && unbreakable[point] != 0;
+  }
+  /// Sets a value per stored point of body points, given by their places in `points`, and of their ghosts.
+  void mark(std::vector<std::uint8_t>& values, std::span<const std::size_t> numbers,
+            std::uint8_t value) const;
+  /// Cuts a bond (offset of the stencil, or place in the list) of a stored point, seen from both ends.
+  void cut(std::size_t point, std::size_t bond);
   /// Reference area (m^2) of an outer face.
   [[nodiscard]] double face_area(std::size_t face) const;
   /// Memory of bonds, kinds and volumes (bytes).
   [[nodiscard]] std::size_t bytes() const;
 
-  /// Calls visit(neighbour) for the bonds of a stored point to other stored points.
+  /// Calls visit(bond, neighbour) for the bonds of a stored point to other stored points; a bond is an offset
+  /// of the stencil or a place in the list.
   template <class Visit>
-  void for_each_neighbour(std::size_t point, const Visit& visit) const {
+  void for_each_bond(std::size_t point, const Visit& visit) const {
     if (const LatticeBonds* on = on_lattice()) {
       for (std::size_t k = 0; k < on->stencil.size(); ++k)
-        if (on->bonds.exists(k, point)) visit(BondPlanes::neighbour(on->stencil, k, point));
+        if (on->bonds.exists(k, point)) visit(k, BondPlanes::neighbour(on->stencil, k, point));
       return;
     }
     const auto& list = std::get<ListedBonds>(bonds);
     for (std::size_t b = list.begin[point]; b < list.begin[point + 1]; ++b)
-      if (list.exists(point, b)) visit(std::size_t{list.neighbour[b]});
+      if (list.exists(point, b)) visit(b, std::size_t{list.neighbour[b]});
+  }
+  /// The same with the neighbour alone.
+  template <class Visit>
+  void for_each_neighbour(std::size_t point, const Visit& visit) const {
+    for_each_bond(point, [&](std::size_t, std::size_t neighbour) { visit(neighbour); });
   }
 };
 

@@ -113,13 +113,28 @@ struct MaterialInput {  // [material.NAME]
   std::map<std::string, std::vector<double>> lists;
   std::optional<double> bulk_modulus;      // Pa; without, a rubber is incompressible
   std::string volumetric;                  // "quadratic" (if empty, too) or "logarithmic"
-  std::optional<double> critical_stretch;  // pmb
+  std::vector<Named> on;                   // sets whose points are of it; empty: all that no other one has
+  std::optional<double> critical_stretch;  // elongation over length
+  std::optional<double> critical_energy_release_rate;  // J/m^2
+  std::optional<double> critical_damage;
   Location at;
 
   [[nodiscard]] std::optional<double> number(const std::string& key) const {
     const auto found = numbers.find(key);
     return found == numbers.end() ? std::nullopt : found->second;
   }
+};
+
+struct InterfaceInput {              // [[interface]]: bonds between two materials
+  std::vector<std::string> between;  // their names
+  std::optional<double> critical_stretch;
+  std::optional<double> critical_energy_release_rate;  // J/m^2
+  Location at;
+};
+
+struct FailureInput {         // [failure]
+  std::vector<Named> not_in;  // sets whose bonds never break
+  Location at;
 };
 
 /// One component of a displacement: a function of x, y, z and stretch or t, or free.
@@ -219,6 +234,8 @@ struct Case {
   std::vector<SetInput> sets;
   ModelInput model;
   std::vector<MaterialInput> materials;
+  std::vector<InterfaceInput> interfaces;
+  FailureInput failure;
   std::vector<LoadInput> loads;
   std::vector<InitialInput> initials;
   SolverInput solver;

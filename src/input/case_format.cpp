@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/nearest_name.hpp"
+#include "input/failure_format.hpp"
 #include "input/field_format.hpp"
 #include "input/format.hpp"
 #include "input/model_format.hpp"
@@ -417,15 +418,6 @@ Format describe(std::optional<ShortInput>& run, const Case& c) {
           }};
 }
 
-void check_case(const Case& c, const Check& check) {
-  if (c.materials.size() == 1) return;
-  if (c.materials.empty())
-    check.fail("material", "missing; expected one material, such as [material.rubber]");
-  check.fail("material",
-             fmt::format("{} materials are given ({} at {} is the second); expected exactly one for now",
-                         c.materials.size(), c.materials[1].name, c.materials[1].at.text()));
-}
-
 bool always() {
   return true;
 }
@@ -469,8 +461,12 @@ Format describe(Case& c) {
            Key{"model", Table{[&c] { return describe(c.model); }, always}, "The model."}.otherwise("{}"),
            Key{"solver", Table{[&c] { return describe(c.solver); }, always}, "The solver."}.required(),
            Key{"material", named_tables(c.materials, [&c](MaterialInput& m) { return describe(m, c); }),
-               "The material."}
+               "The materials."}
                .required(),
+           Key{"interface",
+               tables(c.interfaces, [&c](InterfaceInput& i, std::size_t) { return describe(i, c); }),
+               "Between materials."},
+           Key{"failure", Table{[&c] { return describe(c.failure, c); }, always}, "Failure."}.otherwise("{}"),
            Key{"load", tables(c.loads, [](LoadInput& l, std::size_t) { return describe(l); }), "Loads."},
            Key{"initial", tables(c.initials, [&c](InitialInput& i, std::size_t) { return describe(i, c); }),
                "Initial conditions. Relaxation starts undeformed, since its states do not depend on where "
@@ -485,7 +481,7 @@ Format describe(Case& c) {
            Key{"short",
                Table{[&c] { return describe(c.short_run, c); }, [&c] { return c.short_run.has_value(); }},
                "The short variant."}},
-      .finish = [&c](const Check& check) { check_case(c, check); }};
+      .finish = [&c](const Check& check) { check_failure(c, check); }};
 }
 
 }  // namespace riven

@@ -5,10 +5,13 @@
 #include <algorithm>
 
 #include "input/material_format.hpp"
+
+#include "input/failure_format.hpp"
 #include "input/model_format.hpp"
 
 namespace riven {
 
+using kind::Parts;
 using kind::Quantities;
 using kind::Quantity;
 using kind::Text;
@@ -128,10 +131,15 @@ Format describe(MaterialInput& m, const Case& c) {
   keys.push_back(Key{"volumetric", Text{&m.volumetric, {"quadratic", "logarithmic"}},
                      "Energy of a change of volume: k/2 (J - 1)^2 unless given, or k/4 (J^2 - 1 - 2 ln J)."}
                      .applies(When{"law", &m.law, isochoric_laws()}));
-  keys.push_back(Key{"critical_stretch", Quantity{&m.critical_stretch, dimension::none, positive},
-                     "Elongation over length at which a bond breaks for good; without it none breaks."}
-                     .applies(When{"law", &m.law, {LinearElastic::name}}));
-  return {.doc = "A constitutive law and its parameters. For now a case has exactly one material.",
+  for (Key& key : limit_keys(m.critical_stretch, m.critical_energy_release_rate))
+    keys.push_back(std::move(key));
+  keys.push_back(Key{"critical_damage", Quantity{&m.critical_damage, dimension::none, fraction},
+                     "Share of its bonds that a point has lost when all others break too."});
+  keys.push_back(
+      Key{"on", Parts{&m.on},
+          "The set of points that are of this material, or a list of sets; one material has no `on` "
+          "and all other points."});
+  return {.doc = "A constitutive law and its parameters, and when its bonds break.",
           .at = &m.at,
           .keys = std::move(keys),
           .groups = alternatives(m),

@@ -25,6 +25,7 @@ inline constexpr Dimension area{.metre = 2};
 inline constexpr Dimension time{.second = 1};
 inline constexpr Dimension velocity{.metre = 1, .second = -1};
 inline constexpr Dimension density{.metre = -3, .kilogram = 1};
+inline constexpr Dimension surface_energy{.second = -2, .kilogram = 1};
 inline constexpr Dimension pressure{.metre = -1, .second = -2, .kilogram = 1};
 }  // namespace dimension
 

@@ -18,6 +18,12 @@ struct Breakdown {
   std::string what;
 };
 
+/// What came of a state that the body was to go through.
+struct Passage {
+  std::optional<Breakdown> breakdown{};
+  bool refused = false;
+};
+
 /// A result per point: `components` values each (9: a tensor row by row), point-major, in an SI unit, empty
 /// if dimensionless.
 struct ModelField {
@@ -51,12 +57,17 @@ class Model {
                                                                 std::span<double> force) = 0;
 
   /// The same where a state is one that the body goes through, not one that a solver only tries: what is
-  /// irreversible happens first, such as bonds that break.
-  [[nodiscard]] virtual std::optional<Breakdown> advance(std::span<const double> u, std::span<double> force) {
-    return internal_force(u, force);
+  /// irreversible happens first, such as bonds that break. If a family would lose more than the share
+  /// `most_broken` of its bonds at once, nothing happens and the passage is refused.
+  [[nodiscard]] virtual Passage advance(std::span<const double> u, std::span<double> force,
+                                        double /*most_broken*/ = 1) {
+    return {.breakdown = internal_force(u, force)};
   }
   /// Energy (J) that `advance` has taken from the body so far.
   [[nodiscard]] virtual double dissipated_energy() const { return 0; }
+  /// How near a state is to failure: largest stretch of a bond over the one at which it breaks; 0 where
+  /// nothing can.
+  [[nodiscard]] virtual double overload(std::span<const double> /*u*/) const { return 0; }
 
   /// Strain energy E (J).
   [[nodiscard]] virtual double strain_energy(std::span<const double> u) = 0;

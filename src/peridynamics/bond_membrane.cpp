@@ -31,7 +31,7 @@ double squared_cosine(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 }  // namespace
 
 BondMembrane::BondMembrane(Body body, Material material, const BondMembraneSettings& settings)
-    : PointModel(std::move(body), material.density),
+    : PointModel(std::move(body), {material.density}),
       material_(std::move(material)),
       settings_(settings),
       law_(settings.zero_residual ? zero_residual_law(settings.loading) : published_law(settings.loading)),

@@ -24,18 +24,26 @@ Kinematics kinematics(int dimension, Plane plane) {
   return plane == Plane::stress ? Kinematics::plane_stress : Kinematics::plane_strain;
 }
 
-void check(const Body& body, const CorrespondenceSettings& settings) {
+void check(const Body& body) {
   if (body.dimension == 1)
     throw InputError(
         "the model \"correspondence\" has two or three dimensions; expected kind = \"pmb\" in one");
   if (!body.defects.inclusions.empty())
     throw InputError("the model \"correspondence\" has no rigid inclusions; expected holes and cracks only");
-  if (settings.material.incompressible() &&
-      kinematics(body.dimension, settings.plane) != Kinematics::plane_stress)
+}
+
+void check(const Material& material, Kinematics kinematics) {
+  if (material.incompressible() && kinematics != Kinematics::plane_stress)
     throw InputError(fmt::format(
         "the material \"{}\" keeps its volume, so that its pressure does not follow from the deformation; "
         "expected a bulk_modulus, or plane stress in two dimensions",
-        settings.material.name));
+        material.name));
+}
+
+std::vector<double> densities(const CorrespondenceSettings& settings) {
+  std::vector<double> values{settings.material.density};
+  for (const Material& material : settings.further) values.push_back(material.density);
+  return values;
 }
 
 template <int D>
@@ -75,15 +83,18 @@ struct Batch {
 }  // namespace
 
 Correspondence::Correspondence(Body body, CorrespondenceSettings settings)
-    : PointModel(std::move(body), settings.material.density), settings_(std::move(settings)) {
+    : BreakingModel(std::move(body), densities(settings)), settings_(std::move(settings)) {
   const Body& on = Correspondence::body();
-  check(on, settings_);
-  law_ = {settings_.material, kinematics(on.dimension, settings_.plane)};
-  in_dimension([&]<int D>(std::integral_constant<int, D>) {
-    const auto rest = law_.respond<D>(Eigen::Matrix<double, D, D>::Identity());
-    rest_longitudinal_ = rest.tangent(0, 0);
-    rest_shear_ = rest.tangent(1, 1);
-  });
+  check(on);
+  for (const Material& material : materials()) {
+    laws_.push_back({material, kinematics(on.dimension, settings_.plane)});
+    check(material, laws_.back().kinematics);
+    in_dimension([&]<int D>(std::integral_constant<int, D>) {
+      const auto rest = laws_.back().respond<D>(Eigen::Matrix<double, D, D>::Identity());
+      rest_.push_back({rest.tangent(0, 0), rest.tangent(1, 1)});
+    });
+    stiffest_ = std::max(stiffest_, rest_.back().longitudinal);
+  }
   kernels_ = correspondence_kernels(on.dimension);
   volume_ = on.volume;
   for (const GhostPoint& ghost : on.ghosts) volume_[ghost.point] = volume_[ghost.master];
@@ -96,14 +107,28 @@ Correspondence::Correspondence(Body body, CorrespondenceSettings settings)
     make_list(std::get<ListedBonds>(on.bonds));
 }
 
+std::vector<Material> Correspondence::materials() const {
+  std::vector<Material> all{settings_.material};
+  all.insert(all.end(), settings_.further.begin(), settings_.further.end());
+  return all;
+}
+
+void Correspondence::limits_set() {
+  if (settings_.stabilisation == Stabilisation::bond_associated)
+    throw InputError(
+        "bonds of the variant \"bond-associated\" do not break; expected variant = "
+        "\"stabilised\", or no limits of stretch");
+}
+
 /// `trace` of K (m^5), `weights`: sum of omega V (m^3).
-double Correspondence::spring_of(std::size_t /*point*/, double trace, double weights) const {
+double Correspondence::spring_of(std::size_t point, double trace, double weights) const {
   const int dimension = body().dimension;
+  const Rest& rest = rest_[body().material_of(point)];
   if (settings_.stabilisation == Stabilisation::bond_associated) return 0;
   if (settings_.stabilisation == Stabilisation::energy)
-    return settings_.factor * 4.0 / 3 * rest_shear_ * dimension / trace;
+    return settings_.factor * 4.0 / 3 * rest.shear * dimension / trace;
   // G C / omega_0, as published: numbers in SI units, though the unit is one of N/m^9 instead of N/m^7.
-  const double bulk = rest_longitudinal_ - 2 * rest_shear_ * (dimension - 1) / dimension;
+  const double bulk = rest.longitudinal - 2 * rest.shear * (dimension - 1) / dimension;
   const double horizon = body().horizon;
   const double c = dimension == 3 ? 18 * bulk / (std::numbers::pi * std::pow(horizon, 4))
                                   : 12 * bulk / (std::numbers::pi * body().thickness * std::pow(horizon, 3));
@@ -114,27 +139,51 @@ void Correspondence::find_shapes() {
   const int dimension = body().dimension;
   shape_.assign(static_cast<std::size_t>(dimension * (dimension + 1) / 2),
                 std::vector<double>(body().size(), 0.0));
-  spring_.assign(body().size(), 0.0);
+  for (auto* values : {&spring_, &whole_weight_, &whole_trace_}) values->assign(body().size(), 0.0);
+  share_.assign(body().size(), 1.0);
   for (const std::size_t i : body().points) {
-    Eigen::Matrix3d whole = Eigen::Matrix3d::Zero();
-    double weights = 0;
-    int bonds = 0;
-    for_each_bond(i, [&](std::size_t, const Eigen::Vector3d& xi, double weight) {
-      whole += weight * xi * xi.transpose();
-      weights += weight;
-      ++bonds;
-    });
-    const Eigen::MatrixXd k = whole.topLeftCorner(dimension, dimension);
-    const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k).eigenvalues();
-    if (bonds <= dimension || !(values[dimension - 1] < kFlat * values[0])) {
-      ++loose_;
-      continue;
-    }
-    const Eigen::MatrixXd inverse = k.inverse();
-    for (int r = 0, c = 0; r < dimension; ++r)
-      for (int s = r; s < dimension; ++s, ++c) shape_[static_cast<std::size_t>(c)][i] = inverse(r, s);
-    spring_[i] = spring_of(i, k.trace(), weights);
+    find_shape(i);
+    if (shape_[0][i] == 0) ++loose_;
   }
+}
+
+/// K^-1, s and the share of the energy from the bonds that a point has.
+void Correspondence::find_shape(std::size_t point) {
+  const int dimension = body().dimension;
+  Eigen::Matrix3d whole = Eigen::Matrix3d::Zero();
+  double weights = 0;
+  int bonds = 0;
+  for_each_bond(point, [&](std::size_t, const Eigen::Vector3d& xi, double weight) {
+    whole += weight * xi * xi.transpose();
+    weights += weight;
+    ++bonds;
+  });
+  const Eigen::MatrixXd k = whole.topLeftCorner(dimension, dimension);
+  const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k).eigenvalues();
+  spring_[point] = 0;
+  for (auto& component : shape_) component[point] = 0;
+  if (bonds <= dimension || !(values[dimension - 1] < kFlat * values[0])) return;
+  const Eigen::MatrixXd inverse = k.inverse();
+  for (int r = 0, c = 0; r < dimension; ++r)
+    for (int s = r; s < dimension; ++s, ++c) shape_[static_cast<std::size_t>(c)][point] = inverse(r, s);
+  if (whole_weight_[point] == 0) {
+    whole_weight_[point] = weights;
+    whole_trace_[point] = inverse.trace();
+  }
+  // A family's stiffness is as the share of its energy times tr K^-1.
+  share_[point] = std::min(weights / whole_weight_[point], whole_trace_[point] / inverse.trace());
+  spring_[point] = share_[point] * spring_of(point, k.trace(), weights);
+}
+
+void Correspondence::refit(std::size_t point) {
+  if (body().kind[point] == PointKind::body) find_shape(point);
+  if (share_[point] < 1) damaged_ = true;
+  if (body().on_lattice() == nullptr) {
+    if (!list_.points.empty()) list_.points[point].spring = spring_[point];
+    return;
+  }
+  BlockKind& kind = lattice_.blocks[point / kLanes];
+  if (kind == BlockKind::intact) kind = BlockKind::partial;
 }
 
 void Correspondence::make_lattice(const LatticeBonds& on) {
@@ -204,9 +253,38 @@ void Correspondence::make_bonds() {
   pull_.resize(ends.size());
 }
 
-/// Two sweeps: the second one reads the replies that the first one made. False where the law says nothing.
+/// Stresses and energies of the rows that the kernels make of [begin, end), by the law of each row's material
+/// and to the share that its family has left. False where a law says nothing.
+template <class Law>
+bool Correspondence::respond(const std::vector<Law>& laws, std::size_t begin, std::size_t end,
+                             std::size_t rows, const GradientRows& f, const GradientRows& p,
+                             double* energy) const {
+  if (laws.size() == 1 && !damaged_) return laws.front().stress(rows, f.data(), p.data(), energy) == 0;
+  std::array<std::size_t, kPiece> point{};
+  for_each_row(begin, end, [&](std::size_t i, std::size_t row) { point[row] = i; });
+  const auto components = static_cast<std::size_t>(body().dimension * body().dimension);
+  bool sound = true;
+  for (std::size_t first = 0, last = 0; first < rows; first = last) {
+    const std::size_t material = body().material_of(point[first]);
+    while (last < rows && body().material_of(point[last]) == material) ++last;
+    GradientRows run_f{}, run_p{};
+    for (std::size_t c = 0; c < components; ++c) {
+      run_f[c] = f[c] + first;
+      run_p[c] = p[c] + first;
+    }
+    sound = laws[material].stress(last - first, run_f.data(), run_p.data(), energy + first) == 0 && sound;
+  }
+  for (std::size_t row = 0; row < rows; ++row) {
+    energy[row] *= share_[point[row]];
+    for (std::size_t c = 0; c < components; ++c) p[c][row] *= share_[point[row]];
+  }
+  return sound;
+}
+
+/// Two sweeps: the second one reads the replies that the first one made. False where a law says nothing.
 template <class Bonds, class Law>
-bool Correspondence::sweep(Bonds& bonds, const CorrespondenceSweeps<Bonds>& kernels, const Law& law) {
+bool Correspondence::sweep(Bonds& bonds, const CorrespondenceSweeps<Bonds>& kernels,
+                           const std::vector<Law>& laws) {
   std::atomic<bool> sound = true;
   parallel_pieces(
       body().size(),
@@ -215,7 +293,7 @@ bool Correspondence::sweep(Bonds& bonds, const CorrespondenceSweeps<Bonds>& kern
         const std::size_t n = kernels.deform(bonds, begin, end, batch.f);
         const bool turned = !(body().dimension == 2 ? oriented<2>(batch.f, n) : oriented<3>(batch.f, n));
         if (turned && std::is_same_v<Law, Constitution>) sound = false;
-        if (law.stress(n, batch.f.data(), batch.p.data(), batch.energy) != 0) sound = false;
+        if (!respond(laws, begin, end, n, batch.f, batch.p, batch.energy)) sound = false;
         kernels.reply(bonds, begin, end, batch.f, batch.p);
       },
       kPiece);
@@ -234,7 +312,8 @@ bool Correspondence::sweep(Bonds& bonds, const CorrespondenceSweeps<Bonds>& kern
 /// Eq. (6a): each family pushes the ends of its bonds and keeps what it does to each; then every point
 /// collects.
 template <int D, class Law>
-bool Correspondence::sweep_bonds(const Law& law, std::span<const double> u, std::span<double> force) {
+bool Correspondence::sweep_bonds(const std::vector<Law>& laws, std::span<const double> u,
+                                 std::span<double> force) {
   using Tensor = Eigen::Matrix<double, D, D>;
   std::atomic<bool> sound = true;
   parallel_for(static_cast<std::ptrdiff_t>(body().points.size()), [&](std::ptrdiff_t number) {
@@ -250,7 +329,7 @@ bool Correspondence::sweep_bonds(const Law& law, std::span<const double> u, std:
         f[c][k] = gauges[k].f(static_cast<Eigen::Index>(c / D), static_cast<Eigen::Index>(c % D));
     }
     if (std::is_same_v<Law, Constitution> && !oriented<D>(f, n)) sound = false;
-    if (law.stress(n, f.data(), p.data(), numbers.data() + 2 * D * D * n) != 0) sound = false;
+    if (laws[own.material].stress(n, f.data(), p.data(), numbers.data() + 2 * D * D * n) != 0) sound = false;
     Tensor q = Tensor::Zero();
     std::array<double, 3>* pulls = pull_.data() + first_bond_[own.point];
     for (std::size_t k = 0; k < n; ++k) {
@@ -293,18 +372,20 @@ void Correspondence::look_at(std::span<const double> u) {
 }
 
 template <class Law>
-bool Correspondence::force_by(const Law& law, std::span<const double> u, std::span<double> force) {
+bool Correspondence::force_by(const std::vector<Law>& laws, std::span<const double> u,
+                              std::span<double> force) {
   if (settings_.stabilisation == Stabilisation::bond_associated)
-    return in_dimension([&]<int D>(std::integral_constant<int, D>) { return sweep_bonds<D>(law, u, force); });
+    return in_dimension(
+        [&]<int D>(std::integral_constant<int, D>) { return sweep_bonds<D>(laws, u, force); });
   look_at(u);
   for (std::size_t d = 0; d < static_cast<std::size_t>(body().dimension); ++d)
     lattice_.out[d] = list_.out[d] = force.data() + d * body().size();
-  return body().on_lattice() != nullptr ? sweep(lattice_, kernels_.lattice, law)
-                                        : sweep(list_, kernels_.list, law);
+  return body().on_lattice() != nullptr ? sweep(lattice_, kernels_.lattice, laws)
+                                        : sweep(list_, kernels_.list, laws);
 }
 
 std::optional<Breakdown> Correspondence::internal_force(std::span<const double> u, std::span<double> force) {
-  if (force_by(law_, u, force)) return std::nullopt;
+  if (force_by(laws_, u, force)) return std::nullopt;
   return find_fault(u);
 }
 
@@ -319,7 +400,7 @@ std::optional<Breakdown> Correspondence::find_fault(std::span<const double> u) c
                            fmt::format("the deformation gradient of the point's {} has the "
                                        "determinant {:.3g}: points have moved through one another",
                                        gauge.bond < 0 ? "family" : "bonds", j)};
-        if (!std::isfinite(law_.respond<D>(gauge.f).energy))
+        if (!std::isfinite(laws_[body().material_of(i)].respond<D>(gauge.f).energy))
           return Breakdown{body().position(i),
                            "the material's law has no stress for the deformation of the point's family"};
       }
@@ -352,7 +433,7 @@ double Correspondence::strain_energy(std::span<const double> u) {
         const std::size_t n = body().on_lattice() != nullptr
                                   ? kernels_.lattice.measure(lattice_, begin, end, batch.f, rest)
                                   : kernels_.list.measure(list_, begin, end, batch.f, rest);
-        law_.stress(n, batch.f.data(), batch.p.data(), batch.energy);
+        respond(laws_, begin, end, n, batch.f, batch.p, batch.energy);
         for_each_row(begin, end, [&](std::size_t i, std::size_t row) {
           energy += body().volume[i] * (batch.energy[row] + 0.5 * spring_[i] * rest[row]);
         });
@@ -361,26 +442,27 @@ double Correspondence::strain_energy(std::span<const double> u) {
       kPiece);
 }
 
-/// Calls visit(F) for the deformation gradients of points [begin, end), those without a family left out.
 template <int D>
 void Correspondence::for_each_gradient(
     std::size_t begin, std::size_t end, std::span<const double> u,
-    const std::function<void(const Eigen::Matrix<double, D, D>&)>& visit) const {
+    const std::function<void(const Eigen::Matrix<double, D, D>&, std::size_t)>& visit) const {
   if (settings_.stabilisation == Stabilisation::bond_associated) {
     for (std::size_t i = begin; i < end; ++i)
-      for (const Gauge<D>& gauge : gauges(family<D>(i, u))) visit(gauge.f);
+      for (const Gauge<D>& gauge : gauges(family<D>(i, u))) visit(gauge.f, body().material_of(i));
     return;
   }
   Batch<kPiece> batch;
-  const std::size_t n = body().on_lattice() != nullptr
-                            ? kernels_.lattice.deform(lattice_, begin, end, batch.f)
-                            : kernels_.list.deform(list_, begin, end, batch.f);
-  for (std::size_t i = 0; i < n; ++i) {
+  if (body().on_lattice() != nullptr) {
+    kernels_.lattice.deform(lattice_, begin, end, batch.f);
+  } else {
+    kernels_.list.deform(list_, begin, end, batch.f);
+  }
+  for_each_row(begin, end, [&](std::size_t i, std::size_t row) {
     Eigen::Matrix<double, D, D> f;
     for (std::size_t c = 0; c < D * D; ++c)
-      f(static_cast<Eigen::Index>(c / D), static_cast<Eigen::Index>(c % D)) = batch.f[c][i];
-    visit(f);
-  }
+      f(static_cast<Eigen::Index>(c / D), static_cast<Eigen::Index>(c % D)) = batch.f[c][row];
+    visit(f, body().material_of(i));
+  });
 }
 
 std::optional<Breakdown> Correspondence::inspect(std::span<const double> /*u*/) {
@@ -388,7 +470,7 @@ std::optional<Breakdown> Correspondence::inspect(std::span<const double> /*u*/) 
 }
 
 std::size_t Correspondence::bytes() const {
-  return body().bytes() + (volume_.size() + spring_.size()) * sizeof(double) +
+  return body().bytes() + 5 * volume_.size() * sizeof(double) +
          (shape_.size() + reply_.size()) * body().size() * sizeof(double) + lattice_.blocks.size() * 2 +
          list_.points.size() * sizeof(CorrespondencePoint) + list_.weight.size() * sizeof(double) +
          (first_bond_.size() + first_incoming_.size()) * sizeof(std::size_t) +
@@ -397,11 +479,13 @@ std::size_t Correspondence::bytes() const {
 
 template void Correspondence::for_each_gradient<2>(
     std::size_t, std::size_t, std::span<const double>,
-    const std::function<void(const Eigen::Matrix<double, 2, 2>&)>&) const;
+    const std::function<void(const Eigen::Matrix<double, 2, 2>&, std::size_t)>&) const;
 template void Correspondence::for_each_gradient<3>(
     std::size_t, std::size_t, std::span<const double>,
-    const std::function<void(const Eigen::Matrix<double, 3, 3>&)>&) const;
-template bool Correspondence::force_by(const Majorant<2>&, std::span<const double>, std::span<double>);
-template bool Correspondence::force_by(const Majorant<3>&, std::span<const double>, std::span<double>);
+    const std::function<void(const Eigen::Matrix<double, 3, 3>&, std::size_t)>&) const;
+template bool Correspondence::force_by(const std::vector<Majorant<2>>&, std::span<const double>,
+                                       std::span<double>);
+template bool Correspondence::force_by(const std::vector<Majorant<3>>&, std::span<const double>,
+                                       std::span<double>);
 
 }  // namespace riven

@@ -5,10 +5,10 @@
 #include <map>
 
 #include "material/plane.hpp"
+#include "peridynamics/breaking_model.hpp"
 #include "peridynamics/correspondence_kernels.hpp"
 #include "peridynamics/correspondence_law.hpp"
 #include "peridynamics/influence.hpp"
-#include "peridynamics/point_model.hpp"
 
 namespace riven {
 
@@ -21,7 +21,8 @@ enum class Stabilisation {
 
 struct CorrespondenceSettings {
   Material material;
-  Plane plane = Plane::stress;  // in two dimensions
+  std::vector<Material> further{};  // materials 1, 2, ... of the body's points
+  Plane plane = Plane::stress;      // in two dimensions
   Influence influence = Influence::inverse;
   Stabilisation stabilisation = Stabilisation::energy;
   double factor = 1;  // G of the stabilisation energy
@@ -35,11 +36,13 @@ struct CorrespondenceSettings {
 /// is omega (P K^-1 xi + s z); s = 4/3 G mu D / tr K in D dimensions. Bond-associated: the mean of W over
 /// bonds, with gradients that have the bond's own stretch and direction. Force is the gradient of the sum of
 /// energy times V over the body's points; ghosts have none. Families with bonds in too few directions have
-/// none either.
-class Correspondence final : public PointModel {
+/// none either. Bonds that break leave the sums, so that rotations stay rotations, and take their share of
+/// the energy: W and s are multiplied by the share of sum(omega V) that is left, and by less where the bonds
+/// left would be stiffer together than the undamaged family.
+class Correspondence final : public BreakingModel {
  public:
   /// Throws InputError for a body with inclusions or in one dimension, and for an incompressible material in
-  /// anything but plane stress.
+  /// anything but plane stress. Limits of stretch are refused for bond-associated stabilisation.
   Correspondence(Body body, CorrespondenceSettings settings);
 
   [[nodiscard]] std::optional<Breakdown> internal_force(std::span<const double> u,
@@ -56,6 +59,8 @@ class Correspondence final : public PointModel {
   [[nodiscard]] std::vector<std::string> describe() const override;
   [[nodiscard]] std::size_t bytes() const override;
 
+  [[nodiscard]] double family_energy(std::size_t point, std::span<const double> u) const override;
+
   /// s of a stored point's family (Pa/m^5).
   [[nodiscard]] double spring(std::size_t point) const { return spring_[point]; }
   /// Points whose bonds point in too few directions: they have no energy.
@@ -71,6 +76,8 @@ class Correspondence final : public PointModel {
     Eigen::VectorXd weight;                            // omega V of the end (m^3)
     Eigen::Matrix<double, D, D> inverse_shape;         // 1/m^5
     double spring = 0, volume = 0;
+    double share = 1;  // of its energy that broken bonds have left it
+    std::size_t material = 0;
   };
   /// A deformation gradient whose energy is part of the family's.
   template <int D>
@@ -97,7 +104,15 @@ class Correspondence final : public PointModel {
                                  : visit(std::integral_constant<int, 3>{});
   }
 
+  void refit(std::size_t point) override;
+  void limits_set() override;
+  [[nodiscard]] double equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const override;
+  [[nodiscard]] double part_of_energy(const Eigen::Vector3d& xi) const override {
+    return influence(settings_.influence, xi.norm(), body().horizon);
+  }
   void find_shapes();
+  void find_shape(std::size_t point);
+  [[nodiscard]] std::vector<Material> materials() const;
   void make_lattice(const LatticeBonds& on);
   void make_list(const ListedBonds& list);
   void make_bonds();
@@ -106,22 +121,27 @@ class Correspondence final : public PointModel {
   void look_at(std::span<const double> u);
   template <class Visit>
   void for_each_row(std::size_t begin, std::size_t end, const Visit& visit) const;
+  // The following take a law per material.
   template <class Law>
-  bool force_by(const Law& law, std::span<const double> u, std::span<double> force);
+  bool force_by(const std::vector<Law>& laws, std::span<const double> u, std::span<double> force);
   template <class Bonds, class Law>
-  bool sweep(Bonds& bonds, const CorrespondenceSweeps<Bonds>& kernels, const Law& law);
+  bool sweep(Bonds& bonds, const CorrespondenceSweeps<Bonds>& kernels, const std::vector<Law>& laws);
+  template <class Law>
+  bool respond(const std::vector<Law>& laws, std::size_t begin, std::size_t end, std::size_t rows,
+               const GradientRows& f, const GradientRows& p, double* energy) const;
   template <int D, class Law>
-  bool sweep_bonds(const Law& law, std::span<const double> u, std::span<double> force);
+  bool sweep_bonds(const std::vector<Law>& laws, std::span<const double> u, std::span<double> force);
   [[nodiscard]] std::optional<Breakdown> find_fault(std::span<const double> u) const;
 
   [[nodiscard]] double scale_of(double a);
+  /// Of each material: its modulus is to a as those at rest are to the largest.
   template <int D>
-  [[nodiscard]] Majorant<D> majorant(double a) const {
-    return {a, 1 - 2 * rest_shear_ / rest_longitudinal_};
-  }
+  [[nodiscard]] std::vector<Majorant<D>> majorants(double a) const;
+  /// Calls visit(F, material).
   template <int D>
-  void for_each_gradient(std::size_t begin, std::size_t end, std::span<const double> u,
-                         const std::function<void(const Eigen::Matrix<double, D, D>&)>& visit) const;
+  void for_each_gradient(
+      std::size_t begin, std::size_t end, std::span<const double> u,
+      const std::function<void(const Eigen::Matrix<double, D, D>&, std::size_t)>& visit) const;
   template <int D>
   [[nodiscard]] double majorant_of(std::span<const double> u);
   template <int D>
@@ -129,11 +149,20 @@ class Correspondence final : public PointModel {
   template <int D>
   void add_tangent(std::span<const double> u, std::size_t point, TangentBlocks& to) const;
 
+  struct Rest {
+    double longitudinal = 0, shear = 0;  // of a material in its kinematics (Pa)
+  };
+
   CorrespondenceSettings settings_;
-  Constitution law_;
+  std::vector<Constitution> laws_;  // of each material
+  std::vector<Rest> rest_;
+  double stiffest_ = 0;  // longitudinal modulus of them
   CorrespondenceKernels kernels_;
-  double rest_longitudinal_ = 0, rest_shear_ = 0;  // of the material in its kinematics (Pa)
   std::size_t loose_ = 0;
+  // Of stored points, for what broken bonds leave: sum(omega V) (m^3) and tr K^-1 of the undamaged family.
+  std::vector<double> whole_weight_, whole_trace_;
+  std::vector<double> share_;
+  bool damaged_ = false;
   std::vector<double> volume_;              // of stored points, for ghosts that of their master (m^3)
   std::vector<std::vector<double>> shape_;  // K^-1, upper half row by row
   std::vector<double> spring_;
@@ -144,7 +173,8 @@ class Correspondence final : public PointModel {
   std::vector<std::size_t> first_bond_, first_incoming_;
   std::vector<std::uint32_t> incoming_;
   std::vector<std::array<double, 3>> pull_;  // N
-  std::map<int, double> eigenvalues_;        // of the majorant, by the step of its modulus (Pa/m^2)
+  std::map<int, double> eigenvalues_;        // of the majorants, by the step of their modulus (1/s^2)
+  int looks_ = 0;                            // at the stiffness since bonds broke and these were found
 };
 
 template <class Visit>
@@ -162,6 +192,8 @@ Correspondence::Family<D> Correspondence::family(std::size_t point, std::span<co
   family.point = point;
   family.spring = spring_[point];
   family.volume = volume_[point];
+  family.share = share_[point];
+  family.material = body().material_of(point);
   for (int r = 0, c = 0; r < D; ++r)
     for (int s = r; s < D; ++s, ++c)
       family.inverse_shape(r, s) = family.inverse_shape(s, r) = shape_[static_cast<std::size_t>(c)][point];
@@ -189,7 +221,7 @@ std::vector<Correspondence::Gauge<D>> Correspondence::gauges(const Family<D>& fa
   if (family.end.empty()) return {};
   const Tensor h = family.eta * family.weight.asDiagonal() * family.xi.transpose() * family.inverse_shape;
   const Tensor f = Tensor::Identity() + h;
-  if (settings_.stabilisation != Stabilisation::bond_associated) return {{1, f, -1}};
+  if (settings_.stabilisation != Stabilisation::bond_associated) return {{family.share, f, -1}};
   std::vector<Gauge<D>> gauges;
   const double whole = family.weight.sum();
   for (Eigen::Index k = 0; k < family.weight.size(); ++k) {

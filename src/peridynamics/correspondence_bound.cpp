@@ -72,7 +72,8 @@ double largest_eigenvalue(const std::vector<double>& mass, const Product& produc
 using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 9, 9>;
 
 constexpr std::size_t kPiece = 256;  // points that a thread takes at a time
-constexpr double kSlack = 1e-6;      // tells equal tangents from larger ones in spite of rounding
+constexpr int kLooks = 10;       // at the stiffness of a damaged body until its frequencies are found anew
+constexpr double kSlack = 1e-6;  // tells equal tangents from larger ones in spite of rounding
 
 /// Whether b - a is positive definite: much quicker than eigenvalues.
 bool is_below(const SmallMatrix& a, const SmallMatrix& b) {
@@ -81,53 +82,56 @@ bool is_below(const SmallMatrix& a, const SmallMatrix& b) {
 
 }  // namespace
 
-/// The smallest modulus a of a majorant of all tangents in a state (Pa).
+template <int D>
+std::vector<Majorant<D>> Correspondence::majorants(double a) const {
+  std::vector<Majorant<D>> laws;
+  for (const Rest& rest : rest_)
+    laws.push_back({a * rest.longitudinal / stiffest_, 1 - 2 * rest.shear / rest.longitudinal});
+  return laws;
+}
+
+/// The smallest modulus a whose majorants are above all tangents in a state (Pa).
 template <int D>
 double Correspondence::majorant_of(std::span<const double> u) {
-  const SmallMatrix scale =
-      Eigen::SelfAdjointEigenSolver<SmallMatrix>(majorant<D>(1).unit()).operatorInverseSqrt();
+  std::vector<SmallMatrix> scale;
+  for (const Majorant<D>& law : majorants<D>(1))
+    scale.push_back(Eigen::SelfAdjointEigenSolver<SmallMatrix>(law.a * law.unit()).operatorInverseSqrt());
   const SmallMatrix one = SmallMatrix::Identity(D * D, D * D);
   struct Largest {
     double value = 0;
     void operator+=(const Largest& other) { value = std::max(value, other.value); }
   };
   if (settings_.stabilisation != Stabilisation::bond_associated) look_at(u);
-  const double found = ordered_sum<Largest>(
-                           body().size(),
-                           [&](std::size_t begin, std::size_t end) {
-                             Largest most;
-                             for_each_gradient<D>(begin, end, u, [&](const Eigen::Matrix<double, D, D>& f) {
-                               const SmallMatrix scaled = scale * law_.respond<D>(f).tangent * scale;
-                               if (is_below(scaled, (1 + kSlack) * most.value * one)) return;
-                               most +=
-                                   {Eigen::SelfAdjointEigenSolver<SmallMatrix>(scaled, Eigen::EigenvaluesOnly)
-                                        .eigenvalues()[D * D - 1]};
-                             });
-                             return most;
-                           },
-                           kPiece)
-                           .value;
-  return (1 + kSlack) * found;
+  const auto among = [&](std::size_t begin, std::size_t end) {
+    Largest most;
+    for_each_gradient<D>(begin, end, u, [&](const Eigen::Matrix<double, D, D>& f, std::size_t material) {
+      const SmallMatrix scaled = scale[material] * laws_[material].respond<D>(f).tangent * scale[material];
+      if (is_below(scaled, (1 + kSlack) * most.value * one)) return;
+      most += {Eigen::SelfAdjointEigenSolver<SmallMatrix>(scaled, Eigen::EigenvaluesOnly)
+                   .eigenvalues()[D * D - 1]};
+    });
+    return most;
+  };
+  return (1 + kSlack) * ordered_sum<Largest>(body().size(), among, kPiece).value;
 }
 
-/// Largest eigenvalue of the majorant's stiffness over volumes (Pa/m^2). Ghosts follow their masters as at a
+/// Largest eigenvalue of the majorants' stiffness over masses (1/s^2). Ghosts follow their masters as at a
 /// plane of symmetry.
 template <int D>
 double Correspondence::largest_eigenvalue_of(double a) {
   const std::size_t size = body().size();
   std::vector<double> mass(dofs(), 0.0), bent(dofs(), 0.0);
-  for (std::size_t d = 0; d < D; ++d)
-    for (const std::size_t i : body().points) mass[d * size + i] = volume_[i];
+  this->mass(mass);
   const auto sign = [](const GhostPoint& ghost, std::size_t d) {
     return ghost.faces.test(2 * d) || ghost.faces.test(2 * d + 1) ? -1.0 : 1.0;
   };
-  const Majorant<D> law = majorant<D>(a);
+  const std::vector<Majorant<D>> laws = majorants<D>(a);
   return largest_eigenvalue(mass, [&](const std::vector<double>& x, std::vector<double>& y) {
     bent = x;
     for (std::size_t d = 0; d < D; ++d)
       for (const GhostPoint& ghost : body().ghosts)
         bent[d * size + ghost.point] = sign(ghost, d) * x[d * size + ghost.master];
-    static_cast<void>(force_by(law, bent, y));
+    static_cast<void>(force_by(laws, bent, y));
     for (std::size_t d = 0; d < D; ++d)
       for (const GhostPoint& ghost : body().ghosts)
         y[d * size + ghost.master] += sign(ghost, d) * y[d * size + ghost.point];
@@ -138,10 +142,10 @@ double Correspondence::largest_eigenvalue_of(double a) {
 /// The same between two moduli for which it is known: it is a convex function of the modulus, since the
 /// stiffness is linear in it, so that the chord lies above.
 double Correspondence::scale_of(double a) {
-  const double place = kFineness * std::log2(a / rest_longitudinal_);
+  const double place = kFineness * std::log2(a / stiffest_);
   const auto at = [&](int step) {
     const auto [found, isnew] = eigenvalues_.try_emplace(step, 0.0);
-    const double modulus = rest_longitudinal_ * std::exp2(step / kFineness);
+    const double modulus = stiffest_ * std::exp2(step / kFineness);
     if (isnew)
       found->second = in_dimension(
           [&]<int D>(std::integral_constant<int, D>) { return largest_eigenvalue_of<D>(modulus); });
@@ -156,11 +160,14 @@ double Correspondence::scale_of(double a) {
 }
 
 void Correspondence::stiffness_bound(std::span<const double> u, std::span<double> bound) {
+  if (damaged_ && ++looks_ >= kLooks) {  // bonds that broke have changed the frequencies a little
+    eigenvalues_.clear();
+    looks_ = 0;
+  }
   const double a = in_dimension([&]<int D>(std::integral_constant<int, D>) { return majorant_of<D>(u); });
-  const double scale = scale_of(std::max(a, kSoftest * rest_longitudinal_));
-  std::fill(bound.begin(), bound.end(), 0.0);
-  for (std::size_t d = 0; d < static_cast<std::size_t>(body().dimension); ++d)
-    for (const std::size_t i : body().points) bound[d * body().size() + i] = scale * volume_[i];
+  const double scale = scale_of(std::max(a, kSoftest * stiffest_));
+  mass(bound);
+  for (double& row : bound) row *= scale;
 }
 
 }  // namespace riven

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <Eigen/Dense>
+#include <algorithm>
 
 #include "base/parallel.hpp"
 #include "peridynamics/correspondence.hpp"
@@ -26,22 +27,22 @@ std::vector<ModelField> Correspondence::fields(std::span<const double> u) {
   ModelField energy{"strain_energy_density", 1, std::vector<double>(points.size()), "J/m^3"};
   ModelField stress{"nominal_stress", 9, std::vector<double>(9 * points.size()), "Pa"};
   ModelField gradient{"deformation_gradient", 9, std::vector<double>(9 * points.size()), ""};
-  const Material& material = settings_.material;
   const auto answer = [&]<int D>(std::size_t n) {
     using Tensors = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
     Tensors p(stress.values.data() + 9 * n), f(gradient.values.data() + 9 * n);
     const Family<D> own = family<D>(points[n], u);
     if (own.end.empty()) f.setIdentity();
+    const Constitution& law = laws_[body().material_of(points[n])];
     for (const Gauge<D>& gauge : gauges(own)) {
-      const ResponseIn<D> response = law_.respond<D>(gauge.f);
+      const ResponseIn<D> response = law.respond<D>(gauge.f);
       Eigen::Matrix3d whole = in_space<D>(gauge.f, 1);
-      if (law_.kinematics == Kinematics::plane_stress && D == 2)
-        whole(2, 2) = material.thickness_stretch(whole.topLeftCorner<2, 2>());
+      if (law.kinematics == Kinematics::plane_stress && D == 2)
+        whole(2, 2) = law.material.thickness_stretch(whole.topLeftCorner<2, 2>());
       const double across =
-          law_.kinematics == Kinematics::plane_strain ? material.solid(whole).stress(2, 2) : 0;
+          law.kinematics == Kinematics::plane_strain ? law.material.solid(whole).stress(2, 2) : 0;
       energy.values[n] += gauge.share * response.energy;
       p += gauge.share * in_space<D>(response.stress, across);
-      f += gauge.share * whole;
+      f += (gauge.bond < 0 ? 1 : gauge.share) * whole;
       if (gauge.bond < 0) {
         const auto z = own.eta - (gauge.f - Eigen::Matrix<double, D, D>::Identity()) * own.xi;
         energy.values[n] += 0.5 * own.spring * own.weight.dot(z.colwise().squaredNorm());
@@ -56,6 +57,28 @@ std::vector<ModelField> Correspondence::fields(std::span<const double> u) {
   return {damage(), std::move(energy), std::move(stress), std::move(gradient)};
 }
 
+double Correspondence::equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const {
+  return in_dimension([&]<int D>(std::integral_constant<int, D>) {
+    const Eigen::Matrix<double, D, D> f = (1 + stretch) * Eigen::Matrix<double, D, D>::Identity();
+    const Constitution &first = laws_[a], &second = laws_[b];
+    return 0.5 * (first.respond<D>(f).energy + second.respond<D>(f).energy);
+  });
+}
+
+double Correspondence::family_energy(std::size_t point, std::span<const double> u) const {
+  return in_dimension([&]<int D>(std::integral_constant<int, D>) {
+    const Family<D> own = family<D>(point, u);
+    const Constitution& law = laws_[body().material_of(point)];
+    double energy = 0;
+    for (const Gauge<D>& gauge : gauges(own)) {
+      const auto z = own.eta - (gauge.f - Eigen::Matrix<double, D, D>::Identity()) * own.xi;
+      energy += gauge.share * law.respond<D>(gauge.f).energy +
+                0.5 * own.spring * own.weight.dot(z.colwise().squaredNorm());
+    }
+    return own.volume * energy;
+  });
+}
+
 void Correspondence::tangent(std::span<const double> u, std::size_t first, std::size_t last,
                              TangentBlocks& to) const {
   for (std::size_t n = first; n < last; ++n)
@@ -67,6 +90,7 @@ void Correspondence::tangent(std::span<const double> u, std::size_t first, std::
 template <int D>
 void Correspondence::add_tangent(std::span<const double> u, std::size_t point, TangentBlocks& to) const {
   const Family<D> own = family<D>(point, u);
+  const Constitution& law = laws_[body().material_of(point)];
   const auto bonds = static_cast<Eigen::Index>(own.end.size()), size = D * bonds;
   if (bonds == 0) return;
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(size, size);
@@ -75,7 +99,7 @@ void Correspondence::add_tangent(std::span<const double> u, std::size_t point, T
     Eigen::Matrix<double, D * D, Eigen::Dynamic> g = Eigen::MatrixXd::Zero(D * D, size);
     for (Eigen::Index b = 0; b < bonds; ++b)
       for (int d = 0; d < D; ++d) g.template block<D, 1>(D * d, D * b + d) = q.col(b);
-    hessian += own.volume * gauge.share * g.transpose() * law_.respond<D>(gauge.f).tangent * g;
+    hessian += own.volume * gauge.share * g.transpose() * law.respond<D>(gauge.f).tangent * g;
   }
   if (own.spring > 0) {
     const Eigen::MatrixXd weighed = own.xi * own.weight.asDiagonal();
@@ -89,12 +113,14 @@ void Correspondence::add_tangent(std::span<const double> u, std::size_t point, T
 }
 
 std::vector<std::string> Correspondence::describe() const {
-  const SmallStrain moduli = settings_.material.small_strain();
   std::vector<std::string> lines;
-  lines.push_back(fmt::format("material: shear modulus {:.6g} Pa{}", moduli.shear,
-                              settings_.material.incompressible()
-                                  ? ", incompressible"
-                                  : fmt::format(", bulk modulus {:.6g} Pa", moduli.bulk)));
+  for (const Constitution& law : laws_) {
+    const SmallStrain moduli = law.material.small_strain();
+    lines.push_back(fmt::format("material: shear modulus {:.6g} Pa{}", moduli.shear,
+                                law.material.incompressible()
+                                    ? ", incompressible"
+                                    : fmt::format(", bulk modulus {:.6g} Pa", moduli.bulk)));
+  }
   switch (settings_.stabilisation) {
     case Stabilisation::energy:
       lines.push_back(
@@ -113,9 +139,10 @@ std::vector<std::string> Correspondence::describe() const {
   }
   if (loose_ > 0)
     lines.push_back(fmt::format("points: {} have bonds in too few directions, and no stress", loose_));
-  if (!settings_.material.objective())
+  if (!std::all_of(laws_.begin(), laws_.end(),
+                   [](const Constitution& law) { return law.material.objective(); }))
     lines.emplace_back("rotations: the law takes them for strain; expected small ones only");
-  lines.emplace_back("failure: none, bonds never break");
+  for (std::string& line : describe_limits()) lines.push_back(std::move(line));
   return lines;
 }
 

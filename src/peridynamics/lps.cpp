@@ -29,7 +29,12 @@ void check(const Body& body, const LpsSettings& settings) {
                                  settings.poissons_ratio));
 }
 
-LpsConstants constants(const LpsSettings& settings, int dimension) {
+/// kappa and beta (Pa): `Lps` has the formulas.
+struct Constants {
+  double kappa = 0, beta = 0;
+};
+
+Constants constants(const LpsSettings& settings, int dimension) {
   const double e = settings.youngs_modulus, nu = settings.poissons_ratio, shear = e / (2 * (1 + nu));
   double bulk = e / (3 * (1 - 2 * nu));  // mean stress over dilatation, in the plane those of the plane
   if (dimension == 2) bulk = settings.plane == Plane::stress ? e / (2 * (1 - nu)) : shear / (1 - 2 * nu);
@@ -57,6 +62,12 @@ struct Anisotropy {
   [[nodiscard]] double factor() const { return second > 0 ? -first / second : 0; }
 };
 
+std::vector<double> densities(const std::vector<LpsSettings>& settings) {
+  std::vector<double> values;
+  for (const LpsSettings& one : settings) values.push_back(one.density);
+  return values;
+}
+
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -65,10 +76,9 @@ double median(std::vector<double>& values) {
 
 }  // namespace
 
-Lps::Lps(Body body, const LpsSettings& settings)
-    : PointModel(std::move(body), settings.density), settings_(settings) {
-  check(Lps::body(), settings_);
-  constants_ = lattice_.constants = list_.constants = constants(settings_, Lps::body().dimension);
+Lps::Lps(Body body, std::vector<LpsSettings> settings)
+    : BreakingModel(std::move(body), densities(settings)), settings_(std::move(settings)) {
+  for (const LpsSettings& one : settings_) check(Lps::body(), one);
   kernels_ = lps_kernels(Lps::body().dimension);
   volume_ = Lps::body().volume;
   for (const GhostPoint& ghost : Lps::body().ghosts) volume_[ghost.point] = volume_[ghost.master];
@@ -77,16 +87,48 @@ Lps::Lps(Body body, const LpsSettings& settings)
   if (const LatticeBonds* on = Lps::body().on_lattice()) {
     make_stencil(*on);
     find_moments();
+    find_constants();
     sort_blocks(*on);
   } else {
     make_list(std::get<ListedBonds>(Lps::body().bonds));
     find_moments();
-    for (std::size_t i = 0; i < list_.points.size(); ++i) list_.points[i].inverse_moment = inverse_moment_[i];
+    find_constants();
+    for (std::size_t i = 0; i < list_.points.size(); ++i) list_.points[i].straight = straight_[i];
   }
 }
 
+void Lps::find_constants() {
+  kappa_.resize(body().size());
+  straight_.resize(body().size());
+  for (std::size_t i = 0; i < body().size(); ++i) {
+    const auto [kappa, beta] = constants(settings_[body().material_of(i)], body().dimension);
+    kappa_[i] = kappa;
+    straight_[i] = inverse_moment_[i] * beta;
+  }
+  lattice_.inverse_moment = list_.inverse_moment = inverse_moment_.data();
+  lattice_.kappa = list_.kappa = kappa_.data();
+  lattice_.straight = straight_.data();
+}
+
+double Lps::equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const {
+  double energy = 0;
+  for (const std::size_t material : {a, b}) {
+    const auto [kappa, beta] = constants(settings_[material], body().dimension);
+    const double theta = body().dimension * stretch;
+    energy += 0.25 * (kappa + beta / body().dimension) * theta * theta;
+  }
+  return energy;
+}
+
+/// A block that has lost bonds keeps its place among those that the kernels visit.
+void Lps::refit(std::size_t point) {
+  if (body().on_lattice() == nullptr) return;
+  BlockKind& kind = lattice_.blocks[point / kLanes];
+  if (kind == BlockKind::intact) kind = BlockKind::partial;
+}
+
 double Lps::omega(const Eigen::Vector3d& xi) const {
-  return influence(settings_.influence, xi.norm(), body().horizon) *
+  return influence(settings_.front().influence, xi.norm(), body().horizon) *
          factor(anisotropy_, xi, body().dimension);
 }
 
@@ -96,7 +138,7 @@ double Lps::omega(const Eigen::Vector3d& xi) const {
 void Lps::find_anisotropy() {
   const auto add = [&](Anisotropy& to, const Eigen::Vector3d& xi, double volume) {
     const double length = xi.norm();
-    to.add(influence(settings_.influence, length, body().horizon) * length * length * volume,
+    to.add(influence(settings_.front().influence, length, body().horizon) * length * length * volume,
            lattice_harmonic(xi / length, body().dimension));
   };
   if (const LatticeBonds* on = body().on_lattice()) {
@@ -166,7 +208,6 @@ void Lps::find_moments() {
 }
 
 void Lps::sort_blocks(const LatticeBonds& on) {
-  lattice_.inverse_moment = inverse_moment_.data();
   for (std::size_t block = 0; block < body().size() / kLanes; ++block)
     lattice_.blocks.push_back(on.bonds.kind(block));
   const double first = volume_[body().points.front()];
@@ -240,23 +281,27 @@ std::optional<Breakdown> Lps::inspect(std::span<const double> /*u*/) {
 }
 
 std::vector<std::string> Lps::describe() const {
-  const double kappa = constants_.kappa, beta = constants_.beta;
   const int dimension = body().dimension;
-  std::vector<std::string> lines = {
-      fmt::format("material: bulk modulus {:.6g} Pa{}, shear modulus {:.6g} Pa", kappa + beta / dimension,
-                  dimension == 3                     ? ""
-                  : settings_.plane == Plane::stress ? " in plane stress"
-                                                     : " in plane strain",
-                  beta / (dimension + 2)),
-      fmt::format("influence: {}, corrected for the lattice's directions by {:+.3g} of its harmonic",
-                  settings_.influence == Influence::inverse ? "inverse length" : "constant", anisotropy_),
-      "failure: none, bonds never break"};
+  std::vector<std::string> lines;
+  for (const LpsSettings& one : settings_) {
+    const auto [kappa, beta] = constants(one, dimension);
+    lines.push_back(fmt::format("material: bulk modulus {:.6g} Pa{}, shear modulus {:.6g} Pa",
+                                kappa + beta / dimension,
+                                dimension == 3               ? ""
+                                : one.plane == Plane::stress ? " in plane stress"
+                                                             : " in plane strain",
+                                beta / (dimension + 2)));
+  }
+  lines.push_back(fmt::format(
+      "influence: {}, corrected for the lattice's directions by {:+.3g} of its harmonic",
+      settings_.front().influence == Influence::inverse ? "inverse length" : "constant", anisotropy_));
+  for (std::string& line : describe_limits()) lines.push_back(std::move(line));
   return lines;
 }
 
 std::size_t Lps::bytes() const {
-  return body().bytes() + (volume_.size() + inverse_moment_.size() + tension_.size()) * sizeof(double) +
-         lattice_.blocks.size() + list_.points.size() * sizeof(LpsPoint) +
+  return body().bytes() + 5 * volume_.size() * sizeof(double) + lattice_.blocks.size() +
+         list_.points.size() * sizeof(LpsPoint) +
          (list_.weight.size() + list_.length.size()) * sizeof(double);
 }
 

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "material/plane.hpp"
+#include "peridynamics/breaking_model.hpp"
 #include "peridynamics/influence.hpp"
 #include "peridynamics/lps_kernels.hpp"
-#include "peridynamics/point_model.hpp"
 
 namespace riven {
 
@@ -26,12 +27,15 @@ struct LpsSettings {
 /// in D dimensions with their bulk modulus K. The force is the gradient of the sum of W V over the body's
 /// points; ghosts have no energy. A uniform dilation has exact energy in every family, cut ones too. So that
 /// any small strain has Hooke's stress in the complete families of a lattice, the influence omega has a
-/// factor 1 + a h, with the harmonic of fourth order h of the bond's direction that a lattice has.
-class Lps final : public PointModel {
+/// factor 1 + a h, with the harmonic of fourth order h of the bond's direction that a lattice has. Bonds that
+/// break take their part of theta and of the extensions with them: c stays that of the undamaged family.
+class Lps final : public BreakingModel {
  public:
-  /// Throws InputError for a body with inclusions or in one dimension, for a Poisson's ratio out of range,
+  /// `settings` of each of the body's materials, in the same plane and with the same influence. Throws
+  /// InputError for a body with inclusions or in one dimension, for a Poisson's ratio out of range,
   /// and where the horizon reaches too few directions for an isotropic solid.
-  Lps(Body body, const LpsSettings& settings);
+  Lps(Body body, std::vector<LpsSettings> settings);
+  Lps(Body body, const LpsSettings& settings) : Lps(std::move(body), std::vector{settings}) {}
 
   [[nodiscard]] std::optional<Breakdown> internal_force(std::span<const double> u,
                                                         std::span<double> force) override;
@@ -46,6 +50,8 @@ class Lps final : public PointModel {
   [[nodiscard]] std::vector<ModelField> fields(std::span<const double> u) override;
   [[nodiscard]] std::vector<std::string> describe() const override;
   [[nodiscard]] std::size_t bytes() const override;
+
+  [[nodiscard]] double family_energy(std::size_t point, std::span<const double> u) const override;
 
   /// The factor a.
   [[nodiscard]] double anisotropy() const { return anisotropy_; }
@@ -71,6 +77,12 @@ class Lps final : public PointModel {
   template <class Visit>
   void for_each_pull(std::size_t point, std::span<const double> u, const Visit& visit) const;
 
+  void refit(std::size_t point) override;
+  [[nodiscard]] double equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const override;
+  [[nodiscard]] double part_of_energy(const Eigen::Vector3d& xi) const override {
+    return omega(xi) * xi.squaredNorm();
+  }
+  void find_constants();
   [[nodiscard]] double omega(const Eigen::Vector3d& xi) const;
   void find_anisotropy();
   void make_stencil(const LatticeBonds& on);
@@ -85,16 +97,17 @@ class Lps final : public PointModel {
   [[nodiscard]] double dilatation(std::size_t point, std::span<const double> u) const;
   /// Force state of a point's family along a bond, over omega (N/m^6).
   [[nodiscard]] double tension(std::size_t point, double dilatation, const Pull& pull) const {
-    return inverse_moment_[point] *
-           (constants_.kappa * dilatation * pull.bond.length + constants_.beta * pull.extension);
+    return inverse_moment_[point] * kappa_[point] * dilatation * pull.bond.length +
+           straight_[point] * pull.extension;
   }
 
-  LpsSettings settings_;
-  LpsConstants constants_;
+  std::vector<LpsSettings> settings_;
   LpsKernels kernels_;
   double anisotropy_ = 0;
   std::vector<double> volume_;          // of stored points, for ghosts that of their master (m^3)
   std::vector<double> inverse_moment_;  // c of the body points with bonds, else 0 (1/m^5)
+  std::vector<double> kappa_;           // of stored points (Pa)
+  std::vector<double> straight_;        // c beta (Pa/m^5)
   std::vector<double> tension_;         // of one state, see LpsLattice
   LpsLattice lattice_;                  // one of both is in use
   LpsList list_;

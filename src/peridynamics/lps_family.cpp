@@ -26,6 +26,14 @@ double Lps::dilatation(std::size_t point, std::span<const double> u) const {
   return inverse_moment_[point] * sum;
 }
 
+double Lps::family_energy(std::size_t point, std::span<const double> u) const {
+  double extensions = 0;
+  for_each_pull(point, u,
+                [&](const Pull& pull) { extensions += pull.bond.weight * pull.extension * pull.extension; });
+  const double theta = dilatation(point, u);
+  return 0.5 * volume_[point] * (kappa_[point] * theta * theta + straight_[point] * extensions);
+}
+
 std::vector<ModelField> Lps::fields(std::span<const double> u) {
   const std::vector<std::size_t>& points = body().points;
   ModelField theta{"dilatation", 1, std::vector<double>(points.size()), {}};
@@ -42,10 +50,10 @@ std::vector<ModelField> Lps::fields(std::span<const double> u) {
       extensions += pull.bond.weight * pull.extension * pull.extension;
       p += pull.bond.weight * tension(i, theta.values[n], pull) * pull.direction * pull.bond.xi.transpose();
     });
-    energy.values[n] = 0.5 * (constants_.kappa * theta.values[n] * theta.values[n] +
-                              constants_.beta * inverse_moment_[i] * extensions);
-    if (body().dimension == 2 && settings_.plane == Plane::strain)
-      p(2, 2) = settings_.poissons_ratio * (p(0, 0) + p(1, 1));
+    energy.values[n] = 0.5 * (kappa_[i] * theta.values[n] * theta.values[n] + straight_[i] * extensions);
+    const LpsSettings& material = settings_[body().material_of(i)];
+    if (body().dimension == 2 && material.plane == Plane::strain)
+      p(2, 2) = material.poissons_ratio * (p(0, 0) + p(1, 1));
   });
   return {damage(), std::move(energy), std::move(stress), std::move(theta)};
 }
@@ -64,16 +72,15 @@ void Lps::tangent(std::span<const double> u, std::size_t first, std::size_t last
     Eigen::Index at = 0;
     for_each_pull(i, u, [&](const Pull& pull) {
       const double across = tension(i, theta, pull) / pull.r;
-      const Matrix3d own =
-          volume * pull.bond.weight *
-          (across * Matrix3d::Identity() + (constants_.beta * c - across) * along(pull.direction));
+      const Matrix3d own = volume * pull.bond.weight *
+                           (across * Matrix3d::Identity() + (straight_[i] - across) * along(pull.direction));
       hessian.block(at, at, dimension, dimension) = own.topLeftCorner(dimension, dimension);
       gradient.segment(at, dimension) =
           (c * pull.bond.weight * pull.bond.length * pull.direction).head(dimension);
       ends.push_back(static_cast<End>(pull.bond.end));
       at += dimension;
     });
-    hessian.noalias() += (constants_.kappa * volume) * gradient * gradient.transpose();
+    hessian.noalias() += (kappa_[i] * volume) * gradient * gradient.transpose();
     add_family_block(i, ends, {}, hessian, to);
   }
 }

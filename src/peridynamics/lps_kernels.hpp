@@ -9,12 +9,6 @@
 
 namespace riven {
 
-/// What the force state of a linear peridynamic solid is made of: `Lps` has the formulas.
-struct LpsConstants {
-  double kappa = 0;  // of the squared dilatation, beside the bonds' own part of it (Pa)
-  double beta = 0;   // of the extensions (Pa)
-};
-
 /// A bond of the stencil, as the kernels read it.
 struct LpsBond {
   std::ptrdiff_t shift = 0;    // to the neighbour, in storage entries
@@ -24,15 +18,17 @@ struct LpsBond {
   double weight_length = 0;    // omega times length (m)
 };
 
-/// What the kernels see of a body on a lattice and of its state. Points are taken in blocks of eight.
+/// What the kernels see of a body on a lattice and of its state: `Lps` has the formulas. Points are taken in
+/// blocks of eight.
 struct LpsLattice {
-  LpsConstants constants;
   std::vector<LpsBond> stencil;
   std::vector<BlockKind> blocks;
   const std::uint8_t* masks = nullptr;     // of all blocks: a byte per bond of the stencil
   const double* volume = nullptr;          // of a point, for ghosts that of their master (m^3)
   double uniform_volume = 0;               // if it is the same for all points, else 0
   const double* inverse_moment = nullptr;  // c (1/m^5); 0 for points without a family of their own
+  const double* kappa = nullptr;           // of a point's material (Pa)
+  const double* straight = nullptr;        // c beta (Pa/m^5)
   double* tension = nullptr;               // q = c (kappa theta - beta), of one state
   std::array<const double*, 3> u{};
   // For the bound of the stiffness, with the gradients g of a family's dilatation to its points, G = sum|g|:
@@ -44,16 +40,17 @@ struct LpsLattice {
 /// A bond's other end in a list, side by side in one line of the cache.
 struct alignas(64) LpsPoint {
   std::array<double, 3> x{};  // undeformed (m)
-  double inverse_moment = 0;
+  double straight = 0;
   std::array<double, 3> u{};  // m
   double tension = 0;
 };
 
 /// The same for listed bonds.
 struct LpsList {
-  LpsConstants constants;
   std::vector<LpsPoint> points;
   const double* volume = nullptr;
+  const double* inverse_moment = nullptr;
+  const double* kappa = nullptr;
   double* tension = nullptr;                 // copied into the points between the sweeps
   std::vector<double> weight;                // omega V of the other end, of every bond (m^3)
   std::vector<double> length;                // of every bond (m)

@@ -10,9 +10,11 @@ RIVEN_INLINE Lanes extension(const Bonds<D>& at, Lanes length) {
   return squared_growth(at) / (root(dot(at.y, at.y)) + length);
 }
 
-/// q = c (kappa theta - beta) with the dilatation theta = c S, from the sum S of omega L e V over the family.
-RIVEN_INLINE Lanes tension(const LpsConstants& constants, Lanes c, Lanes sum) {
-  return c * (constants.kappa * (c * sum) - constants.beta);
+/// q = c (kappa theta - beta) of eight points with the dilatation theta = c S, from the sum S of omega L e V
+/// over the family.
+RIVEN_INLINE Lanes tension(const LpsLattice& on, std::size_t point, Lanes sum) {
+  const Lanes c = load(on.inverse_moment + point);
+  return c * (load(on.kappa + point) * (c * sum)) - load(on.straight + point);
 }
 
 /// Sums over families for the bound of the stiffness: omega L V, that times the extension, and times the
@@ -76,12 +78,6 @@ struct OwnBlock {
   }
 };
 
-/// Energy densities of eight points, times 2: kappa theta^2 + beta c Q, with the sum Q of omega e^2 V.
-RIVEN_INLINE Lanes twice_energy(const LpsConstants& constants, Lanes c, Lanes s, Lanes q) {
-  const Lanes theta = c * s;
-  return constants.kappa * theta * theta + constants.beta * c * q;
-}
-
 // ---- on a lattice ----
 
 template <int D, bool kUniform, bool kIntact>
@@ -100,7 +96,7 @@ RIVEN_INLINE void respond_block(LpsLattice& on, std::size_t block) {
     sum += part;
   }
   if (kUniform) sum = on.uniform_volume * sum;
-  store(on.tension + point, tension(on.constants, load(on.inverse_moment + point), sum));
+  store(on.tension + point, tension(on, point, sum));
 }
 
 /// Forces on eight points: a bond carries omega ((A + A') L + (B + B') (r - L)) Y / r times both volumes,
@@ -113,15 +109,14 @@ RIVEN_INLINE void pull_block(const LpsLattice& on, std::size_t block) {
   load_displacements(on, point, u);
   RIVEN_UNROLL
   for (Lanes& component : force) component = broadcast(0);
-  const Lanes q = load(on.tension + point), c = load(on.inverse_moment + point);
+  const Lanes q = load(on.tension + point), own = load(on.straight + point);
   for (std::size_t k = 0; k < count; ++k) {
     if (!kIntact && masks[k] == 0) continue;
     const LpsBond& bond = on.stencil[k];
     const Bonds<D> at = bonds_at(on, bond, point, u);
     const Lanes both_q = q + load_at(on.tension, point, bond.shift);
-    const Lanes both_c = c + load_at(on.inverse_moment, point, bond.shift);
-    Lanes pull = (bond.weight * on.constants.beta) * both_c +
-                 (bond.weight_length * both_q) * inverse_root(dot(at.y, at.y));
+    const Lanes straight = own + load_at(on.straight, point, bond.shift);
+    Lanes pull = bond.weight * straight + (bond.weight_length * both_q) * inverse_root(dot(at.y, at.y));
     if (!kIntact) pull = select(expand(masks[k]), pull);
     if (!kUniform) pull = pull * load_at(on.volume, point, bond.shift);
     RIVEN_UNROLL
@@ -161,7 +156,6 @@ void pull(const LpsLattice& on, std::size_t begin, std::size_t end) {
 
 template <int D>
 void grip(LpsLattice& on, std::size_t begin, std::size_t end) {
-  const double kappa = on.constants.kappa > 0 ? on.constants.kappa : 0;
   for (std::size_t point = begin; point < end; point += kLanes) {
     const std::uint8_t* masks = on.masks + point / kLanes * on.stencil.size();
     Lanes u[D];
@@ -174,7 +168,8 @@ void grip(LpsLattice& on, std::size_t begin, std::size_t end) {
                bond.weight_length * load_at(on.volume, point, bond.shift), expand(masks[k]));
     }
     const Lanes c = load(on.inverse_moment + point), own = norm(sums.own);
-    store(on.tension + point, tension(on.constants, c, sums.dilatation));
+    const Lanes kappa = maximum(load(on.kappa + point), broadcast(0));
+    store(on.tension + point, tension(on, point, sums.dilatation));
     store(on.grip + point, kappa * c * c * (sums.lengths + own));
     store(on.own_grip + point, kappa * c * c * (sums.lengths + own) * own);
   }
@@ -186,15 +181,15 @@ void bound(const LpsLattice& on, std::size_t begin, std::size_t end) {
     const std::uint8_t* masks = on.masks + point / kLanes * on.stencil.size();
     Lanes u[D];
     load_displacements(on, point, u);
-    const Lanes q = load(on.tension + point), c = load(on.inverse_moment + point);
+    const Lanes q = load(on.tension + point), own = load(on.straight + point);
     OwnBlock<D> block;
     for (std::size_t k = 0; k < on.stencil.size(); ++k) {
       if (masks[k] == 0) continue;
       const LpsBond& bond = on.stencil[k];
       block.add(bonds_at(on, bond, point, u).y, broadcast(bond.length),
-                on.constants.beta * (c + load_at(on.inverse_moment, point, bond.shift)),
-                q + load_at(on.tension, point, bond.shift), load_at(on.grip, point, bond.shift),
-                bond.weight * load_at(on.volume, point, bond.shift), expand(masks[k]));
+                own + load_at(on.straight, point, bond.shift), q + load_at(on.tension, point, bond.shift),
+                load_at(on.grip, point, bond.shift), bond.weight * load_at(on.volume, point, bond.shift),
+                expand(masks[k]));
     }
     RIVEN_UNROLL
     for (int d = 0; d < D; ++d)
@@ -218,8 +213,9 @@ double energy(const LpsLattice& on, std::size_t begin, std::size_t end) {
       first += we * bond.length;
       second += select(expand(masks[k]), we * e);
     }
-    const Lanes c = load(on.inverse_moment + point);
-    energy += twice_energy(on.constants, c, first, second) * load(on.volume + point);
+    const Lanes theta = load(on.inverse_moment + point) * first;
+    energy += (load(on.kappa + point) * theta * theta + load(on.straight + point) * second) *
+              load(on.volume + point);
   }
   return 0.5 * sum(energy);
 }
@@ -231,7 +227,7 @@ template <int D>
 struct ListedBonds8 {
   const std::uint32_t* ends;
   Bonds<D> bonds;
-  Lanes weight, length, inverse_moment, tension;
+  Lanes weight, length, straight, tension;
 };
 
 template <int D>
@@ -251,7 +247,7 @@ RIVEN_INLINE ListedBonds8<D> gather(const LpsList& list, const LpsPoint& own, st
   }
   at.weight = load(list.weight.data() + n);
   at.length = load(list.length.data() + n);
-  at.inverse_moment = place[3];
+  at.straight = place[3];
   at.tension = state[3];
   return at;
 }
@@ -272,8 +268,8 @@ void respond(LpsList& list, std::size_t begin, std::size_t end) {
       const Lanes e = root(dot(at.bonds.y, at.bonds.y)) - at.length;
       parts += select(exists, at.weight * at.length * e);
     });
-    const double c = list.points[i].inverse_moment, theta = c * sum(parts);
-    list.tension[i] = c * (list.constants.kappa * theta - list.constants.beta);
+    const double c = list.inverse_moment[i], theta = c * sum(parts);
+    list.tension[i] = c * (list.kappa[i] * theta) - list.points[i].straight;
   }
 }
 
@@ -285,9 +281,9 @@ void pull(const LpsList& list, std::size_t begin, std::size_t end) {
     RIVEN_UNROLL
     for (Lanes& component : force) component = broadcast(0);
     for_each_eight<D>(list, i, [&](const ListedBonds8<D>& at, Mask exists) RIVEN_INLINED {
-      const Lanes straight = list.constants.beta * (own.inverse_moment + at.inverse_moment);
-      const Lanes pull = at.weight * (straight + (own.tension + at.tension) * at.length *
-                                                     inverse_root(dot(at.bonds.y, at.bonds.y)));
+      const Lanes pull =
+          at.weight * (own.straight + at.straight +
+                       (own.tension + at.tension) * at.length * inverse_root(dot(at.bonds.y, at.bonds.y)));
       RIVEN_UNROLL
       for (int d = 0; d < D; ++d) force[d] += select(exists, pull * at.bonds.y[d]);
     });
@@ -298,7 +294,6 @@ void pull(const LpsList& list, std::size_t begin, std::size_t end) {
 
 template <int D>
 void grip(LpsList& list, std::size_t begin, std::size_t end) {
-  const double kappa = list.constants.kappa > 0 ? list.constants.kappa : 0;
   for (std::size_t i = begin; i < end; ++i) {
     GripSums<D> sums;
     for_each_eight<D>(list, i, [&](const ListedBonds8<D>& at, Mask exists) RIVEN_INLINED {
@@ -307,9 +302,10 @@ void grip(LpsList& list, std::size_t begin, std::size_t end) {
     double own2 = 0;
     RIVEN_UNROLL
     for (const Lanes& component : sums.own) own2 += sum(component) * sum(component);
-    const double c = list.points[i].inverse_moment, theta = c * sum(sums.dilatation);
+    const double c = list.inverse_moment[i], theta = c * sum(sums.dilatation);
+    const double kappa = list.kappa[i] > 0 ? list.kappa[i] : 0;
     const double own = __builtin_sqrt(own2), all = sum(sums.lengths) + own;
-    list.tension[i] = c * (list.constants.kappa * theta - list.constants.beta);
+    list.tension[i] = c * (list.kappa[i] * theta) - list.points[i].straight;
     list.grip[i] = kappa * c * c * all;
     list.own_grip[i] = kappa * c * c * all * own;
   }
@@ -323,8 +319,8 @@ void bound(const LpsList& list, std::size_t begin, std::size_t end) {
     for_each_eight<D>(list, i, [&](const ListedBonds8<D>& at, Mask exists) RIVEN_INLINED {
       double grip[kLanes];
       for (std::size_t l = 0; l < kLanes; ++l) grip[l] = list.grip[at.ends[l]];
-      block.add(at.bonds.y, at.length, list.constants.beta * (own.inverse_moment + at.inverse_moment),
-                own.tension + at.tension, load(grip), at.weight, exists);
+      block.add(at.bonds.y, at.length, own.straight + at.straight, own.tension + at.tension, load(grip),
+                at.weight, exists);
     });
     double entry[D][D];
     RIVEN_UNROLL
@@ -350,8 +346,8 @@ double energy(const LpsList& list, std::size_t begin, std::size_t end) {
       first += select(exists, we * at.length);
       second += select(exists, we * e);
     });
-    const double c = list.points[i].inverse_moment, theta = c * sum(first);
-    energy += list.volume[i] * (list.constants.kappa * theta * theta + list.constants.beta * c * sum(second));
+    const double theta = list.inverse_moment[i] * sum(first);
+    energy += list.volume[i] * (list.kappa[i] * theta * theta + list.points[i].straight * sum(second));
   }
   return 0.5 * energy;
 }

@@ -43,7 +43,7 @@ InvariantLaw law_of(const Material& material) {
 }  // namespace
 
 Membrane::Membrane(Body body, Material material, double stabilisation)
-    : PointModel(std::move(body), material.density),
+    : PointModel(std::move(body), {material.density}),
       material_(std::move(material)),
       law_(law_of(material_)),
       stabilisation_(stabilisation),

@@ -23,18 +23,27 @@ double dilatation_modulus(const PmbSettings& settings, int dimension) {
   return settings.plane == Plane::stress ? e / (1 - 1.0 / 3) : e / ((1 + 0.25) * (1 - 0.5));
 }
 
+std::vector<double> densities(const std::vector<PmbSettings>& settings) {
+  std::vector<double> values;
+  for (const PmbSettings& one : settings) values.push_back(one.density);
+  return values;
+}
+
 }  // namespace
 
-Pmb::Pmb(Body body, const PmbSettings& settings)
-    : PointModel(std::move(body), settings.density),
-      settings_(settings),
+Pmb::Pmb(Body body, std::vector<PmbSettings> settings)
+    : BreakingModel(std::move(body), densities(settings)),
+      settings_(std::move(settings)),
       kernels_(pmb_kernels(Pmb::body().dimension)) {
   if (!Pmb::body().defects.inclusions.empty())
     throw InputError("the model \"pmb\" has no rigid inclusions; expected holes and cracks only");
   weight_ = Pmb::body().volume;
   for (const GhostPoint& ghost : Pmb::body().ghosts)
     weight_[ghost.point] = 0.5 * Pmb::body().volume[ghost.master];
-  micromodulus_ = 4 * dilatation_modulus(settings_, Pmb::body().dimension) / family_moment();
+  const double moment = family_moment();
+  for (const PmbSettings& one : settings_)
+    micromodulus_.push_back(4 * dilatation_modulus(one, Pmb::body().dimension) / moment);
+  if (settings_.size() > 1) half_compliance_ = half_compliances();
   if (const LatticeBonds* on = Pmb::body().on_lattice()) {
     make_lattice_kernel(*on);
   } else {
@@ -43,7 +52,24 @@ Pmb::Pmb(Body body, const PmbSettings& settings)
 }
 
 double Pmb::poissons_ratio() const {
-  return body().dimension == 2 && settings_.plane == Plane::stress ? 1.0 / 3 : 0.25;
+  return body().dimension == 2 && settings_.front().plane == Plane::stress ? 1.0 / 3 : 0.25;
+}
+
+double Pmb::equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const {
+  const double first = dilatation_modulus(settings_[a], body().dimension);
+  const double second = dilatation_modulus(settings_[b], body().dimension);
+  return 2 / (1 / first + 1 / second) * stretch * stretch;
+}
+
+std::vector<double> Pmb::half_compliances() const {
+  std::vector<double> values(body().size());
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = 0.5 / micromodulus_[body().material_of(i)];
+  return values;
+}
+
+double Pmb::micromodulus_between(std::size_t point, std::size_t end) const {
+  if (half_compliance_.empty()) return micromodulus_.front();
+  return 1 / (half_compliance_[point] + half_compliance_[end]);
 }
 
 double Pmb::full_volume(std::size_t point) const {
@@ -80,46 +106,31 @@ double Pmb::family_moment() const {
 
 void Pmb::make_lattice_kernel(const LatticeBonds& on) {
   const Stencil& stencil = on.stencil;
-  for (std::size_t k = 0; k < stencil.size(); ++k) {
-    const double limit = stencil.length[k] * (1 + settings_.critical_stretch);
-    lattice_.stencil.push_back(
-        {stencil.shift[k], stencil.bond[k], stencil.length[k], 1 / stencil.length[k], limit * limit});
-  }
-  lattice_.masks = own_masks().data();
-  lattice_.blocks.resize(body().size() / kLanes);
-  sort_blocks();
+  for (std::size_t k = 0; k < stencil.size(); ++k)
+    lattice_.stencil.push_back({stencil.shift[k], stencil.bond[k], stencil.length[k], 1 / stencil.length[k],
+                                stencil.length[k] * stencil.length[k]});
+  lattice_.masks = body().masks().data();
+  for (std::size_t block = 0; block < body().size() / kLanes; ++block)
+    lattice_.blocks.push_back(on.bonds.kind(block));
   lattice_.weight = weight_.data();
-  lattice_.stiffness = micromodulus_;
+  lattice_.stiffness = micromodulus_.front();
+  if (!half_compliance_.empty()) lattice_.half_compliance = half_compliance_.data();
   const double first = weight_[body().points.front()];
   if (body().ghosts.empty() && std::all_of(body().points.begin(), body().points.end(),
                                            [&](std::size_t i) { return weight_[i] == first; }))
     lattice_.uniform_weight = first;
 }
 
-const std::vector<std::uint8_t>& Pmb::own_masks() const {
-  if (const LatticeBonds* on = body().on_lattice()) return on->bonds.bytes();
-  return std::get<ListedBonds>(body().bonds).masks;
+/// A block that has lost bonds keeps its place among those that the kernels visit.
+void Pmb::refit(std::size_t point) {
+  if (body().on_lattice() == nullptr) return;
+  BlockKind& kind = lattice_.blocks[point / kLanes];
+  if (kind == BlockKind::intact) kind = BlockKind::partial;
 }
 
-std::vector<std::uint8_t>& Pmb::own_masks() {
-  if (auto* on = std::get_if<LatticeBonds>(&own_body().bonds)) return on->bonds.bytes();
-  return std::get<ListedBonds>(own_body().bonds).masks;
-}
-
-/// Finds the kind of every block from its bits.
-void Pmb::sort_blocks() {
-  const LatticeBonds* on = body().on_lattice();
-  for (std::size_t block = 0; block < lattice_.blocks.size(); ++block)
-    lattice_.blocks[block] = on->bonds.kind(block);
-}
-
-void Pmb::save(Snapshot& to) const {
-  each_member(*this, to.saving());
-}
-
-void Pmb::restore(const Snapshot& from) {
-  each_member(*this, from.restoring());
-  sort_blocks();
+void Pmb::limits_set() {
+  lattice_.least_limit2 = list_.least_limit2 = least_limit2().data();
+  lattice_.beyond = list_.beyond = beyond().data();
 }
 
 void Pmb::make_list_kernel(const ListedBonds& list) {
@@ -128,6 +139,7 @@ void Pmb::make_list_kernel(const ListedBonds& list) {
   for (std::size_t i = 0; i < size; ++i) {
     list_.points[i].x = list.position[i];
     list_.points[i].weight = weight_[i];
+    if (!half_compliance_.empty()) list_.points[i].half_compliance = half_compliance_[i];
   }
   list_.inverse_length.assign(list.begin.back() + kLanes, 0.0);
   for (std::size_t i = 0; i < size; ++i)
@@ -141,9 +153,9 @@ void Pmb::make_list_kernel(const ListedBonds& list) {
     }
   list_.begin = list.begin.data();
   list_.neighbour = list.neighbour.data();
-  list_.masks = own_masks().data();
-  list_.limit2 = (1 + settings_.critical_stretch) * (1 + settings_.critical_stretch);
-  list_.stiffness = micromodulus_;
+  list_.masks = body().masks().data();
+  list_.stiffness = micromodulus_.front();
+  list_.mixed = !half_compliance_.empty();
 }
 
 /// Shows the kernels a state and where their result goes.
@@ -161,25 +173,33 @@ void Pmb::look_at(std::span<const double> u, std::span<double> out) {
   });
 }
 
-void Pmb::evaluate(std::span<const double> u, std::span<double> force, bool breaks) {
-  look_at(u, force);
-  dissipated_ += ordered_sum<double>(
-      body().size(),
-      [&](std::size_t begin, std::size_t end) {
-        return body().on_lattice() != nullptr ? kernels_.lattice_force(lattice_, begin, end, breaks)
-                                              : kernels_.listed_force(list_, begin, end, breaks);
-      },
-      kPiece);
+void Pmb::pull(std::size_t begin, std::size_t end) {
+  if (body().on_lattice() != nullptr) {
+    kernels_.lattice_force(lattice_, begin, end);
+  } else {
+    kernels_.listed_force(list_, begin, end);
+  }
 }
 
 std::optional<Breakdown> Pmb::internal_force(std::span<const double> u, std::span<double> force) {
-  evaluate(u, force, false);
+  look_at(u, force);
+  parallel_pieces(
+      body().size(), [&](std::size_t begin, std::size_t end) { pull(begin, end); }, kPiece);
   return std::nullopt;
 }
 
-std::optional<Breakdown> Pmb::advance(std::span<const double> u, std::span<double> force) {
-  evaluate(u, force, true);
-  return std::nullopt;
+/// The forces mark where bonds are too long; where some break, they are found again.
+Passage Pmb::advance(std::span<const double> u, std::span<double> force, double most_broken) {
+  static_cast<void>(internal_force(u, force));
+  if (!breaks()) return {};
+  const std::vector<LongBond> bonds = long_bonds(u);
+  if (share_of_family(bonds) > most_broken) return {.refused = true};
+  const std::vector<std::size_t> points = bonds.empty() ? std::vector<std::size_t>{} : lose(bonds, u);
+  const std::size_t group = body().on_lattice() != nullptr ? kLanes : 1;
+  for (std::size_t n = 0; n < points.size(); ++n)
+    if (n == 0 || points[n] / group != points[n - 1] / group)
+      pull(points[n] / group * group, (points[n] / group + 1) * group);
+  return {};
 }
 
 double Pmb::strain_energy(std::span<const double> u) {
@@ -223,8 +243,9 @@ void Pmb::for_each_pull(std::size_t point, std::span<const double> u, const Visi
     pull.deformed = pull.reference + eta;
     const double length = pull.reference.norm(), r = pull.deformed.norm();
     const double stretch = eta.dot(pull.reference + pull.deformed) / (length * (r + length));
-    pull.energy = 0.5 * micromodulus_ * stretch * stretch * length;
-    pull.per_length = micromodulus_ * stretch / r;
+    pull.micromodulus = micromodulus_between(point, j);
+    pull.energy = 0.5 * pull.micromodulus * stretch * stretch * length;
+    pull.per_length = pull.micromodulus * stretch / r;
     visit(pull);
   };
   if (const LatticeBonds* on = body().on_lattice()) {
@@ -238,6 +259,15 @@ void Pmb::for_each_pull(std::size_t point, std::span<const double> u, const Visi
     const Point y = body().position(j);
     pull_of(j, {y[0] - x[0], y[1] - x[1], y[2] - x[2]});
   });
+}
+
+/// A bond's ends share its energy.
+double Pmb::family_energy(std::size_t point, std::span<const double> u) const {
+  double energy = 0;
+  for_each_pull(point, u, [&](const Pull& pull) {
+    energy += 0.5 * weight_[point] * weight_[pull.neighbour] * pull.energy;
+  });
+  return energy;
 }
 
 void Pmb::plain_force(std::span<const double> u, std::span<double> force) const {
@@ -261,7 +291,7 @@ void Pmb::tangent(std::span<const double> u, std::size_t first, std::size_t last
       const Eigen::Matrix3d stiffness =
           weight_[i] * weight_[pull.neighbour] *
           (pull.per_length * Eigen::Matrix3d::Identity() +
-           (micromodulus_ / pull.reference.norm() - pull.per_length) * e * e.transpose());
+           (pull.micromodulus / pull.reference.norm() - pull.per_length) * e * e.transpose());
       const std::array ends{static_cast<End>(pull.neighbour)};
       add_family_block(i, ends, {}, stiffness.topLeftCorner(dimension, dimension), to);
     });
@@ -285,17 +315,16 @@ std::vector<ModelField> Pmb::fields(std::span<const double> u) {
 }
 
 std::vector<std::string> Pmb::describe() const {
-  std::vector<std::string> lines = {
-      fmt::format("material: micromodulus {:.6g} N/m^6, from the sum over a family", micromodulus_)};
+  std::vector<std::string> lines;
+  for (const double micromodulus : micromodulus_)
+    lines.push_back(
+        fmt::format("material: micromodulus {:.6g} N/m^6, from the sum over a family", micromodulus));
   if (body().dimension > 1)
     lines.push_back(fmt::format("material: Poisson's ratio {:.4g}, that of the model{}", poissons_ratio(),
-                                body().dimension == 3              ? ""
-                                : settings_.plane == Plane::stress ? " in plane stress"
-                                                                   : " in plane strain"));
-  lines.push_back(
-      std::isfinite(settings_.critical_stretch)
-          ? fmt::format("failure: bonds break beyond a stretch of {:.6g}", settings_.critical_stretch)
-          : "failure: none, bonds never break");
+                                body().dimension == 3                      ? ""
+                                : settings_.front().plane == Plane::stress ? " in plane stress"
+                                                                           : " in plane strain"));
+  for (std::string& line : describe_limits()) lines.push_back(std::move(line));
   return lines;
 }
 

@@ -8,12 +8,22 @@ RIVEN_INLINE Lanes weights_at(const PmbLattice& on, const PmbBond& bond, std::si
   return load_at(on.weight, point, bond.shift);
 }
 
+/// Micromodulus of eight bonds.
+RIVEN_INLINE Lanes stiffness_at(const PmbLattice& on, const PmbBond& bond, std::size_t point) {
+  if (on.half_compliance == nullptr) return broadcast(on.stiffness);
+  return broadcast(1) / (load(on.half_compliance + point) + load_at(on.half_compliance, point, bond.shift));
+}
+
+/// What a bond's pull is multiplied by, beside what all bonds share.
+enum class Factor { none, weight, weight_and_stiffness };
+
 /// Forces on eight points: f = c (1/L - 1/r) Y V per bond, with r = |Y|. The same as c s Y / r with the
-/// stretch s = (r - L) / L, in one root. Returns whether a bond is beyond its limit.
-template <int D, bool kUniform, bool kIntact>
-RIVEN_INLINE bool pull_block(const PmbLattice& on, std::size_t block) {
+/// stretch s = (r - L) / L, in one root.
+template <int D, Factor kFactor, bool kIntact>
+RIVEN_INLINE void pull_block(PmbLattice& on, std::size_t block) {
   const std::size_t point = block * kLanes, count = on.stencil.size();
   const std::uint8_t* masks = on.masks + block * count;
+  const double limit2 = on.least_limit2 == nullptr ? __builtin_inf() : on.least_limit2[block];
   Lanes u[D], force[D];
   load_displacements(on, point, u);
   RIVEN_UNROLL
@@ -25,75 +35,39 @@ RIVEN_INLINE bool pull_block(const PmbLattice& on, std::size_t block) {
     const Bonds<D> at = bonds_at(on, bond, point, u);
     const Lanes r2 = dot(at.y, at.y);
     Lanes pull = bond.inverse_length - inverse_root(r2);
-    Mask is_long = greater(r2, bond.limit2);
+    Mask is_long = greater(r2, bond.length2 * limit2);
     if (!kIntact) {
       const Mask exists = expand(masks[k]);
       pull = select(exists, pull);
       is_long = is_long & exists;
     }
-    if (!kUniform) pull = pull * weights_at(on, bond, point);
+    if (kFactor != Factor::none) pull = pull * weights_at(on, bond, point);
+    if (kFactor == Factor::weight_and_stiffness) pull = pull * stiffness_at(on, bond, point);
     beyond = beyond | is_long;
     RIVEN_UNROLL
     for (int d = 0; d < D; ++d) force[d] += pull * at.y[d];
   }
-  const Lanes scale = kUniform ? broadcast(on.stiffness * on.uniform_weight * on.uniform_weight)
-                               : on.stiffness * load(on.weight + point);
+  Lanes scale = broadcast(on.stiffness * on.uniform_weight * on.uniform_weight);
+  if (kFactor == Factor::weight) scale = on.stiffness * load(on.weight + point);
+  if (kFactor == Factor::weight_and_stiffness) scale = load(on.weight + point);
   RIVEN_UNROLL
   for (int d = 0; d < D; ++d) store(on.out[static_cast<std::size_t>(d)] + point, scale * force[d]);
-  return bits_of(beyond) != 0;
+  if (on.beyond != nullptr) on.beyond[block] = bits_of(beyond) != 0 ? 1 : 0;
 }
 
-/// Breaks the bonds of eight points that are beyond their limit. Returns this end's half of their energy.
-template <int D>
-double break_block(PmbLattice& on, std::size_t block) {
-  const std::size_t point = block * kLanes, count = on.stencil.size();
-  std::uint8_t* masks = on.masks + block * count;
-  Lanes u[D];
-  load_displacements(on, point, u);
-  double energy = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const PmbBond& bond = on.stencil[k];
-    const Bonds<D> at = bonds_at(on, bond, point, u);
-    const Lanes r2 = dot(at.y, at.y);
-    const std::uint8_t broken = bits_of(greater(r2, bond.limit2) & expand(masks[k]));
-    if (broken == 0) continue;
-    masks[k] = static_cast<std::uint8_t>(masks[k] & ~broken);
-    on.blocks[block] = BlockKind::partial;
-    double r2_of[kLanes];
-    store(r2_of, r2);
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      if ((broken >> l & 1U) == 0) continue;
-      const double stretch = __builtin_sqrt(r2_of[l]) * bond.inverse_length - 1;
-      const std::size_t end = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(point + l) + bond.shift);
-      energy += 0.25 * on.stiffness * stretch * stretch * bond.length * on.weight[point + l] * on.weight[end];
-    }
-  }
-  return energy;
-}
-
-template <int D, bool kUniform>
-RIVEN_INLINE bool pull_block_of_any_kind(const PmbLattice& on, std::size_t block) {
-  return on.blocks[block] == BlockKind::intact ? pull_block<D, kUniform, true>(on, block)
-                                               : pull_block<D, kUniform, false>(on, block);
-}
-
-template <int D, bool kUniform>
-double pull_blocks(PmbLattice& on, std::size_t begin, std::size_t end, bool breaks) {
-  double energy = 0;
+template <int D, Factor kFactor>
+void pull_blocks(PmbLattice& on, std::size_t begin, std::size_t end) {
   for (std::size_t block = begin / kLanes; block < end / kLanes; ++block) {
-    if (on.blocks[block] == BlockKind::empty) continue;
-    const bool beyond = pull_block_of_any_kind<D, kUniform>(on, block);
-    if (!beyond || !breaks) continue;
-    energy += break_block<D>(on, block);
-    pull_block_of_any_kind<D, kUniform>(on, block);
+    if (on.blocks[block] == BlockKind::intact) pull_block<D, kFactor, true>(on, block);
+    if (on.blocks[block] == BlockKind::partial) pull_block<D, kFactor, false>(on, block);
   }
-  return energy;
 }
 
 template <int D>
-double lattice_force(PmbLattice& on, std::size_t begin, std::size_t end, bool breaks) {
-  return on.uniform_weight > 0 ? pull_blocks<D, true>(on, begin, end, breaks)
-                               : pull_blocks<D, false>(on, begin, end, breaks);
+void lattice_force(PmbLattice& on, std::size_t begin, std::size_t end) {
+  if (on.half_compliance != nullptr) return pull_blocks<D, Factor::weight_and_stiffness>(on, begin, end);
+  return on.uniform_weight > 0 ? pull_blocks<D, Factor::none>(on, begin, end)
+                               : pull_blocks<D, Factor::weight>(on, begin, end);
 }
 
 /// s^2 L of eight bonds.
@@ -116,11 +90,11 @@ double lattice_energy(const PmbLattice& on, std::size_t begin, std::size_t end) 
       const PmbBond& bond = on.stencil[k];
       const Lanes w =
           squared_stretch_times_length(bonds_at(on, bond, point, u), broadcast(bond.inverse_length));
-      of_point += select(expand(masks[k]), w * weights_at(on, bond, point));
+      of_point += select(expand(masks[k]), w * weights_at(on, bond, point) * stiffness_at(on, bond, point));
     }
     energy += of_point * load(on.weight + point);
   }
-  return 0.25 * on.stiffness * sum(energy);
+  return 0.25 * sum(energy);
 }
 
 /// Own blocks of the tangent: a bond's is K = c (1/L e e^T + (1/L - 1/r) (I - e e^T)), and a point's is the
@@ -175,7 +149,7 @@ void lattice_bound(const PmbLattice& on, std::size_t begin, std::size_t end) {
       if (masks[k] == 0) continue;
       const PmbBond& bond = on.stencil[k];
       block.add(bonds_at(on, bond, point, u).y, broadcast(bond.inverse_length), expand(masks[k]),
-                weights_at(on, bond, point));
+                weights_at(on, bond, point) * stiffness_at(on, bond, point));
     }
     double own[D][D][kLanes];
     RIVEN_UNROLL
@@ -188,8 +162,7 @@ void lattice_bound(const PmbLattice& on, std::size_t begin, std::size_t end) {
       for (int b = a; b < D; ++b) of_point[a][b] = own[a][b][l];
       RIVEN_UNROLL
       for (int d = 0; d < D; ++d)
-        on.out[static_cast<std::size_t>(d)][point + l] =
-            on.stiffness * on.weight[point + l] * row_bound(of_point);
+        on.out[static_cast<std::size_t>(d)][point + l] = on.weight[point + l] * row_bound(of_point);
     }
   }
 }
@@ -201,11 +174,12 @@ template <int D>
 struct ListedBonds8 {
   Bonds<D> bonds;
   Lanes weight, inverse_length;
+  Lanes stiffness;  // micromodulus
 };
 
 template <int D>
 RIVEN_INLINE ListedBonds8<D> gather(const PmbList& list, const PmbPoint& own, std::size_t n) {
-  alignas(64) double x[D][kLanes], u[D][kLanes], weight[kLanes];
+  alignas(64) double x[D][kLanes], u[D][kLanes], weight[kLanes], half_compliance[kLanes];
   for (std::size_t l = 0; l < kLanes; ++l) {
     const PmbPoint& far = list.points[list.neighbour[n + l]];
     RIVEN_UNROLL
@@ -214,6 +188,7 @@ RIVEN_INLINE ListedBonds8<D> gather(const PmbList& list, const PmbPoint& own, st
       u[d][l] = far.u[static_cast<std::size_t>(d)];
     }
     weight[l] = far.weight;
+    half_compliance[l] = far.half_compliance;
   }
   ListedBonds8<D> at;
   RIVEN_UNROLL
@@ -223,45 +198,40 @@ RIVEN_INLINE ListedBonds8<D> gather(const PmbList& list, const PmbPoint& own, st
   }
   at.weight = load(weight);
   at.inverse_length = load(list.inverse_length.data() + n);
+  at.stiffness =
+      list.mixed ? broadcast(1) / (own.half_compliance + load(half_compliance)) : broadcast(list.stiffness);
   return at;
 }
 
-/// Calls visit(eight bonds, their masks' byte) for the bonds of a point.
+/// Calls visit(eight bonds, which of them exist) for the bonds of a point.
 template <int D, class Visit>
 RIVEN_INLINE void for_each_eight(const PmbList& list, std::size_t point, const Visit& visit) {
   const PmbPoint& own = list.points[point];
-  std::uint8_t* masks = list.masks + list.begin[point] / 8 + point;
+  const std::uint8_t* masks = list.masks + list.begin[point] / 8 + point;
   for (std::size_t n = list.begin[point]; n < list.begin[point + 1]; n += kLanes, ++masks)
-    if (*masks != 0) visit(gather<D>(list, own, n), *masks);
+    if (*masks != 0) visit(gather<D>(list, own, n), expand(*masks));
 }
 
 template <int D>
-double listed_force(PmbList& list, std::size_t begin, std::size_t end, bool breaks) {
-  double energy = 0;
+void listed_force(PmbList& list, std::size_t begin, std::size_t end) {
   for (std::size_t point = begin; point < end; ++point) {
+    const double limit2 = list.least_limit2 == nullptr ? __builtin_inf() : list.least_limit2[point];
     Lanes force[D];
     RIVEN_UNROLL
     for (Lanes& component : force) component = broadcast(0);
-    const double scale = list.stiffness * list.points[point].weight;
-    for_each_eight<D>(list, point, [&](const ListedBonds8<D>& at, std::uint8_t& bits) RIVEN_INLINED {
+    Mask beyond;
+    for_each_eight<D>(list, point, [&](const ListedBonds8<D>& at, Mask exists) RIVEN_INLINED {
       const Lanes r2 = dot(at.bonds.y, at.bonds.y);
-      const Lanes squared_stretch = r2 * at.inverse_length * at.inverse_length;
-      Mask exists = expand(bits);
-      const std::uint8_t broken = bits_of(greater(squared_stretch, list.limit2) & exists);
-      if (broken != 0 && breaks) {
-        const Lanes taken = squared_stretch_times_length(at.bonds, at.inverse_length) * at.weight;
-        energy += 0.25 * scale * sum(select(expand(broken), taken));
-        bits = static_cast<std::uint8_t>(bits & ~broken);
-        exists = expand(bits);
-      }
-      const Lanes pull = select(exists, (at.inverse_length - inverse_root(r2)) * at.weight);
+      beyond = beyond | (greater(r2 * at.inverse_length * at.inverse_length, limit2) & exists);
+      const Lanes pull = select(exists, (at.inverse_length - inverse_root(r2)) * at.weight * at.stiffness);
       RIVEN_UNROLL
       for (int d = 0; d < D; ++d) force[d] += select(exists, pull * at.bonds.y[d]);
     });
     RIVEN_UNROLL
-    for (int d = 0; d < D; ++d) list.out[static_cast<std::size_t>(d)][point] = scale * sum(force[d]);
+    for (int d = 0; d < D; ++d)
+      list.out[static_cast<std::size_t>(d)][point] = list.points[point].weight * sum(force[d]);
+    if (list.beyond != nullptr) list.beyond[point] = bits_of(beyond) != 0 ? 1 : 0;
   }
-  return energy;
 }
 
 template <int D>
@@ -269,21 +239,21 @@ double listed_energy(const PmbList& list, std::size_t begin, std::size_t end) {
   double energy = 0;
   for (std::size_t point = begin; point < end; ++point) {
     Lanes of_point = broadcast(0);
-    for_each_eight<D>(list, point, [&](const ListedBonds8<D>& at, std::uint8_t bits) RIVEN_INLINED {
+    for_each_eight<D>(list, point, [&](const ListedBonds8<D>& at, Mask exists) RIVEN_INLINED {
       const Lanes w = squared_stretch_times_length(at.bonds, at.inverse_length) * at.weight;
-      of_point += select(expand(bits), w);
+      of_point += select(exists, w * at.stiffness);
     });
     energy += list.points[point].weight * sum(of_point);
   }
-  return 0.25 * list.stiffness * energy;
+  return 0.25 * energy;
 }
 
 template <int D>
 void listed_bound(const PmbList& list, std::size_t begin, std::size_t end) {
   for (std::size_t point = begin; point < end; ++point) {
     OwnBlock<D> block;
-    for_each_eight<D>(list, point, [&](const ListedBonds8<D>& at, std::uint8_t bits) RIVEN_INLINED {
-      block.add(at.bonds.y, at.inverse_length, expand(bits), at.weight);
+    for_each_eight<D>(list, point, [&](const ListedBonds8<D>& at, Mask exists) RIVEN_INLINED {
+      block.add(at.bonds.y, at.inverse_length, exists, at.weight * at.stiffness);
     });
     double own[D][D];
     RIVEN_UNROLL
@@ -291,8 +261,7 @@ void listed_bound(const PmbList& list, std::size_t begin, std::size_t end) {
     for (int b = a; b < D; ++b) own[a][b] = sum(block.entry[a][b]);
     RIVEN_UNROLL
     for (int d = 0; d < D; ++d)
-      list.out[static_cast<std::size_t>(d)][point] =
-          list.stiffness * list.points[point].weight * row_bound(own);
+      list.out[static_cast<std::size_t>(d)][point] = list.points[point].weight * row_bound(own);
   }
 }
 

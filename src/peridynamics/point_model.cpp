@@ -17,7 +17,8 @@ Eigen::Vector2d plane(const Point& p) {
 
 }  // namespace
 
-PointModel::PointModel(Body body, double density) : body_(std::move(body)), density_(density) {
+PointModel::PointModel(Body body, std::vector<double> density)
+    : body_(std::move(body)), density_(std::move(density)) {
   for (const Shape& shape : body_.defects.inclusions) {
     Inclusion inclusion;
     double area = 0;
@@ -32,7 +33,7 @@ PointModel::PointModel(Body body, double density) : body_(std::move(body)), dens
     }
     if (body_.dimension != 2 || area == 0)
       throw InputError("an inclusion is a disc or a box in two dimensions");
-    inclusion.mass = density_ * area * body_.thickness;
+    inclusion.mass = density_.front() * area * body_.thickness;
     inclusions_.push_back(inclusion);
   }
   surface_.assign(body_.interface.size(), Eigen::Vector2d::Zero());
@@ -161,7 +162,8 @@ void PointModel::mass(std::span<double> mass) const {
   std::fill(mass.begin(), mass.end(), 0.0);
   for (int axis = 0; axis < body_.dimension; ++axis)
     for (const std::size_t i : body_.points)
-      mass[static_cast<std::size_t>(axis) * body_.size() + i] = density_ * body_.volume[i];
+      mass[static_cast<std::size_t>(axis) * body_.size() + i] =
+          density_[body_.material_of(i)] * body_.volume[i];
   for (std::size_t c = 0; c < inclusions_.size(); ++c)
     for (std::size_t d = 0; d < 3; ++d) mass[inclusion_dof(c) + d] = inclusions_[c].mass;
 }

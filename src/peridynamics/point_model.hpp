@@ -36,9 +36,9 @@ class PointModel : public Model {
  protected:
   /// For models whose bonds break.
   [[nodiscard]] Body& own_body() { return body_; }
-  /// `density` in kg/m^3, of the inclusions too. Throws InputError unless the inclusions are discs or boxes
-  /// of a two-dimensional body.
-  PointModel(Body body, double density);
+  /// `density` of each of the body's materials (kg/m^3), the first one of the inclusions too. Throws
+  /// InputError unless the inclusions are discs or boxes of a two-dimensional body.
+  PointModel(Body body, std::vector<double> density);
   // Kernels hold on to places in a model's vectors: those move with it, but a copy would look at the
   // original.
   PointModel(PointModel&&) = default;
@@ -84,7 +84,7 @@ class PointModel : public Model {
   [[nodiscard]] Eigen::Vector2d arm(const InterfaceBond& bond) const;
 
   Body body_;
-  double density_ = 0;
+  std::vector<double> density_;
   std::size_t directed_bonds_ = 0;
   std::vector<Inclusion> inclusions_;
   std::vector<Eigen::Vector2d> surface_;  // displacements of the surface points (m)

@@ -14,11 +14,15 @@ std::optional<std::size_t> Simulation::face(const std::string& name) {
   return static_cast<std::size_t>(found - kFaceNames.begin());
 }
 
-const PointSet& Simulation::set(const std::string& name) const {
+const PointSet& find_set(const std::vector<PointSet>& sets, const std::string& name) {
   const auto found =
       std::find_if(sets.begin(), sets.end(), [&](const PointSet& s) { return s.name == name; });
   if (found == sets.end()) throw InputError(fmt::format("no set is called \"{}\"", name));
   return *found;
+}
+
+const PointSet& Simulation::set(const std::string& name) const {
+  return find_set(sets, name);
 }
 
 std::size_t Simulation::entry(std::size_t axis, std::size_t number) const {
@@ -32,6 +36,7 @@ Simulation build_simulation(const Case& input) {
   simulation.parameter = input.solver.method == "verlet" ? Parameter::time : Parameter::stretch;
   Body body = make_body(input);
   for (const SetInput& set : input.sets) simulation.sets.push_back(make_set(set, input, body));
+  mark_points(input, simulation.sets, body);
   auto model = make_model(input, std::move(body));
   simulation.body = &model->body();
   simulation.constraints =

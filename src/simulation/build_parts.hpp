@@ -16,6 +16,9 @@ Body make_body(const Case& in);
 /// The points of a set; an empty one is an error.
 PointSet make_set(const SetInput& in, const Case& of, const Body& body);
 
+/// Gives the body's points the materials of their sets, and marks those whose bonds never break.
+void mark_points(const Case& in, const std::vector<PointSet>& sets, Body& body);
+
 std::unique_ptr<PointModel> make_model(const Case& in, Body body);
 
 /// Turns the loads into constraints on the state of the model.

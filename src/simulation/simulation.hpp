@@ -18,6 +18,9 @@ struct PointSet {
   std::vector<std::size_t> points;  // their numbers in the list of the body's points
 };
 
+/// The set of that name. The input layer has checked that it exists.
+const PointSet& find_set(const std::vector<PointSet>& sets, const std::string& name);
+
 /// Everything a run needs, built from a case. Reactions are collected under 0 to 5 for the faces, and under 6
 /// for points and inclusions that are held.
 struct Simulation {

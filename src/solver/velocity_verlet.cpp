@@ -199,7 +199,7 @@ class Verlet {
 
   void evaluate() {
     ++state_.evaluations;
-    if (const auto breakdown = model_.advance(state_.u, force_))
+    if (const auto breakdown = model_.advance(state_.u, force_).breakdown)
       fail(watchdog_.inspect(constraints_, state_.u, state_.u, state_.v).value_or(*breakdown));
     constraints_.reduce(force_);
   }

@@ -21,9 +21,9 @@ class BrittleSpring final : public PulledPoint {
     force[0] = -force[1];
     return std::nullopt;
   }
-  std::optional<Breakdown> advance(std::span<const double> u, std::span<double> force) override {
+  [[nodiscard]] Passage advance(std::span<const double> u, std::span<double> force, double) override {
     broken_ = broken_ || (breaks && u[0] > 0.5);
-    return internal_force(u, force);
+    return {.breakdown = internal_force(u, force)};
   }
   [[nodiscard]] double dissipated_energy() const override { return broken_ ? 1 : 0; }
   [[nodiscard]] double strain_energy(std::span<const double> u) override {

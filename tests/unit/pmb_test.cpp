@@ -48,17 +48,17 @@ TEST(Pmb, KernelsAgreeWithPlainLoops) {
   for (int n = 0; n < 30; ++n) {
     const int dimension = 1 + n % 3;
     const Body lattice = make_lattice_body(random_cells(random, dimension, n % 2 == 0));
-    PmbSettings settings = kGlass;
-    settings.critical_stretch = random.between(0.05, 0.3);
+    const double limit = random.between(0.05, 0.3);
     const unsigned seed = static_cast<unsigned>(random.integer(0, 1 << 30));
     for (const InstructionSet set : supported_sets()) {
       const UseSet use(set);
       for (const bool lists : {false, true}) {
-        Pmb model(lists ? listed(lattice) : lattice, settings);
+        Pmb model(lists ? listed(lattice) : lattice, kGlass);
+        model.set_limits(FailureLimits::uniform(limit));
         Random states(seed);
         const auto breaking = random_displacements(model, states, 0.2);
         std::vector<double> ignored(model.dofs());
-        EXPECT_FALSE(model.advance(breaking, ignored));
+        EXPECT_FALSE(model.advance(breaking, ignored, 1).breakdown);
         const auto u = random_displacements(model, states, 0.1);
         const auto force = force_of(model, u), plain = plain_force_of(model, u);
         // Sums of up to 300 terms; each loses digits as 1/L - 1/r does at strains of a tenth.
@@ -74,18 +74,18 @@ TEST(Pmb, BreaksTheBondsBeyondTheirLimitAtBothEnds) {
   Random random(99);
   for (int n = 0; n < 12; ++n) {
     const Body lattice = make_lattice_body(random_cells(random, 1 + n % 3, true));
-    PmbSettings settings = kGlass;
-    settings.critical_stretch = 0.12;
+    constexpr double kLimit = 0.12;
     const unsigned seed = static_cast<unsigned>(random.integer(0, 1 << 30));
     std::vector<std::vector<std::vector<Point>>> results;
     for (const InstructionSet set : supported_sets()) {
       const UseSet use(set);
       for (const bool lists : {false, true}) {
-        Pmb whole(lists ? listed(lattice) : lattice, settings), model(whole.body(), settings);
+        Pmb whole(lists ? listed(lattice) : lattice, kGlass), model(whole.body(), kGlass);
+        model.set_limits(FailureLimits::uniform(kLimit));
         Random states(seed);
         const auto u = random_displacements(model, states, 0.15);
         std::vector<double> force(model.dofs());
-        EXPECT_FALSE(model.advance(u, force));
+        EXPECT_FALSE(model.advance(u, force, 1).breakdown);
         const Body& body = model.body();
         const auto exists = [&](std::size_t i, std::size_t j) {
           bool found = false;
@@ -104,8 +104,8 @@ TEST(Pmb, BreaksTheBondsBeyondTheirLimitAtBothEnds) {
             }
             const double stretch = std::sqrt(r2 / length2) - 1;
             EXPECT_EQ(exists(i, j), exists(j, i));
-            if (std::abs(stretch - settings.critical_stretch) > 1e-12) {
-              EXPECT_EQ(exists(i, j), stretch < settings.critical_stretch) << stretch;
+            if (std::abs(stretch - kLimit) > 1e-12) {
+              EXPECT_EQ(exists(i, j), stretch < kLimit) << stretch;
             }
             broken += exists(i, j) ? 0 : 1;
           });
@@ -125,9 +125,8 @@ TEST(Pmb, BreaksTheBondsBeyondTheirLimitAtBothEnds) {
 
 TEST(Pmb, TryingAStateBreaksNothing) {
   Random random(5);
-  PmbSettings settings = kGlass;
-  settings.critical_stretch = 0.01;
-  Pmb model(make_lattice_body(cells_of({12, 9})), settings);
+  Pmb model(make_lattice_body(cells_of({12, 9})), kGlass);
+  model.set_limits(FailureLimits::uniform(0.01));
   const auto before = families(model.body());
   static_cast<void>(force_of(model, random_displacements(model, random, 0.2)));
   EXPECT_EQ(families(model.body()), before);
@@ -287,13 +286,12 @@ TEST(Pmb, HasTheSameBitsOnAnyNumberOfThreads) {
     const unsigned seed = 12;
     for (const int threads : {1, 2, 3, 7}) {
       omp_set_num_threads(threads);
-      PmbSettings settings = kGlass;
-      settings.critical_stretch = 0.1;
-      Pmb model(lists ? listed(body) : body, settings);
+      Pmb model(lists ? listed(body) : body, kGlass);
+      model.set_limits(FailureLimits::uniform(0.1));
       Random states(seed);
       auto& result = results.emplace_back(model.dofs());
       const auto u = random_displacements(model, states, 0.1);
-      EXPECT_FALSE(model.advance(u, result));
+      EXPECT_FALSE(model.advance(u, result, 1).breakdown);
       result.push_back(model.dissipated_energy());
       result.push_back(model.strain_energy(u));
     }

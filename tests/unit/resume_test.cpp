@@ -54,8 +54,10 @@ Body holed_body(bool as_list, Faces mirrored) {
 
 /// Bonds break under all loads, in statics until next to nothing holds together.
 std::unique_ptr<PointModel> pmb(bool as_list, Faces mirrored) {
-  return std::make_unique<Pmb>(holed_body(as_list, mirrored),
-                               PmbSettings{.youngs_modulus = 6, .density = 1, .critical_stretch = 0.02});
+  auto model =
+      std::make_unique<Pmb>(holed_body(as_list, mirrored), PmbSettings{.youngs_modulus = 6, .density = 1});
+  model->set_limits(FailureLimits::uniform(0.02));
+  return model;
 }
 
 std::unique_ptr<PointModel> lps(bool as_list, Faces mirrored) {

@@ -42,7 +42,8 @@ TEST(StaticsWithBreakingBonds, SnapABarAtItsCriticalStretch) {
   const double increment = 0.004, e = 5;
   for (const StaticSolver solve : kSolvers) {
     Pmb bar(make_lattice_body(cells_of({20}, 3, Faces(0b11))),
-            {.youngs_modulus = e, .density = 1, .critical_stretch = kCritical});
+            PmbSettings{.youngs_modulus = e, .density = 1});
+    bar.set_limits(FailureLimits::uniform(kCritical));
     FaceLoads loads;
     for (std::size_t face : {0U, 1U})
       loads[face] = FaceLoad{
@@ -66,12 +67,14 @@ TEST(StaticsWithBreakingBonds, SnapABarAtItsCriticalStretch) {
 struct Strip {
   static constexpr int kHeight = 16, kLength = 40, kHorizon = 3, kCrack = 12;  // spacings
   Strip()
-      : model(make_lattice_body(in()), {.youngs_modulus = 1, .density = 1, .critical_stretch = kCritical}),
+      : model(make_lattice_body(in()), PmbSettings{.youngs_modulus = 1, .density = 1}),
         constraints(constrain(model, edges(
                                          [](double l) {
                                            return Eigen::Matrix2d{{1, 0}, {0, l}};
                                          },
-                                         Faces(0b1100), false))) {}
+                                         Faces(0b1100), false))) {
+    model.set_limits(FailureLimits::uniform(kCritical));
+  }
   static LatticeBodyInput in() {
     LatticeBodyInput in = sheet(kLength, kHeight, 1, Faces(0b1100));
     in.defects.cracks.push_back({{-0.5 * kLength, 0, 0}, {-0.5 * kLength + kCrack, 0, 0}});

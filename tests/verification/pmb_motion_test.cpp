@@ -92,9 +92,8 @@ TEST(PmbMotion, ConvergesToTheContinuumWithOrderTwo) {
 std::pair<double, double> tear(double part_of_stable_step) {
   LatticeBodyInput in = cells_of({30, 20});
   in.defects.cracks.push_back({{-1.6, 0.0, 0}, {-0.4, 0.0, 0}});
-  PmbSettings settings = kGlass;
-  settings.critical_stretch = 1e-3;
-  Pmb model(make_lattice_body(in), settings);
+  Pmb model(make_lattice_body(in), kGlass);
+  model.set_limits(FailureLimits::uniform(1e-3));
   const Body& body = model.body();
   const Constraints none(model.dofs(), 7);
   Constraints constraints = none;

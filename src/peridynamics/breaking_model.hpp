@@ -1,0 +1,92 @@
+#pragma once
+
+#include <limits>
+
+#include "peridynamics/failure_limits.hpp"
+#include "peridynamics/point_model.hpp"
+#include "peridynamics/stretch_kernels.hpp"
+
+namespace riven {
+
+/// A point model whose bonds break for good beyond a stretch that the materials of their ends decide. What a
+/// bond takes with it is the energy that its two families lose in the state in which it breaks.
+class BreakingModel : public PointModel {
+ public:
+  [[nodiscard]] Passage advance(std::span<const double> u, std::span<double> force,
+                                double most_broken) override;
+  [[nodiscard]] double dissipated_energy() const override { return dissipated_; }
+  [[nodiscard]] double overload(std::span<const double> u) const override;
+  void save(Snapshot& to) const override;
+  void restore(const Snapshot& from) override;
+
+  /// From now on bonds break. Throws InputError for limits that are not positive, or not as many as the body
+  /// has pairs of materials.
+  void set_limits(FailureLimits limits);
+  [[nodiscard]] const FailureLimits& limits() const { return limits_; }
+  [[nodiscard]] bool breaks() const { return !limits_.stretch.empty(); }
+  /// The limit of stretch that goes with a critical energy release rate (J/m^2) between two materials: when
+  /// all bonds of a family are stretched so, those across a plane along the axes of the lattice hold this
+  /// energy per area, each what it takes with it when it breaks. Of scattered points the plane has any
+  /// direction.
+  [[nodiscard]] double critical_stretch(double energy_release_rate, std::size_t a, std::size_t b) const;
+  /// Energy (J) of a stored point's own family in a state.
+  [[nodiscard]] virtual double family_energy(std::size_t point, std::span<const double> u) const = 0;
+
+ protected:
+  using PointModel::PointModel;
+
+  /// Follows the bonds of a stored point, of which some have gone or, after `restore`, come back.
+  virtual void refit(std::size_t point) = 0;
+
+  /// Energy density (J/m^3) of a family all of whose bonds have one stretch (r - L) / L, halves of them of
+  /// two materials.
+  [[nodiscard]] virtual double equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const = 0;
+  /// The part of it that one bond takes with it, over its end's volume and up to a factor.
+  [[nodiscard]] virtual double part_of_energy(const Eigen::Vector3d& xi) const = 0;
+
+  /// A bond of a point: offset of the stencil, or place in the list.
+  struct LongBond {
+    std::size_t point = 0, bond = 0, end = 0;
+  };
+  /// Bonds beyond their limit among the groups of points that `beyond` marks, ascending, each from one end or
+  /// from both.
+  [[nodiscard]] std::vector<LongBond> long_bonds(std::span<const double> u) const;
+  /// Largest share of a family among bonds.
+  [[nodiscard]] double share_of_family(const std::vector<LongBond>& bonds) const;
+  /// Breaks bonds. Returns the points that have lost some, ascending.
+  std::vector<std::size_t> lose(std::vector<LongBond> bonds, std::span<const double> u);
+
+  /// Of groups of points, blocks of eight on a lattice and single ones in a list: the least squared ratio of
+  /// lengths at which one of their bonds breaks, and whether one may be beyond it.
+  [[nodiscard]] std::span<const double> least_limit2() const { return least_limit2_; }
+  [[nodiscard]] std::span<std::uint8_t> beyond() { return beyond_; }
+  /// A line for `describe`.
+  [[nodiscard]] std::vector<std::string> describe_limits() const;
+  /// Shows the limits to kernels that mark such groups themselves.
+  virtual void limits_set() {}
+
+ private:
+  template <class Self, class Each>
+  static void each_member(Self& self, const Each& each) {
+    each("bonds.masks", self.bond_masks());
+    each("bonds.dissipated", self.dissipated_);
+  }
+  [[nodiscard]] const std::vector<std::uint8_t>& bond_masks() const { return body().masks(); }
+  [[nodiscard]] std::vector<std::uint8_t>& bond_masks() { return own_body().masks(); }
+  [[nodiscard]] std::size_t group() const;
+  [[nodiscard]] double limit2(std::size_t point, std::size_t end) const;
+  [[nodiscard]] double reach() const;
+  void find_least_limits();
+  void look_for_long_bonds(std::span<const double> u);
+  void add_points_to_lose(std::vector<LongBond>& bonds) const;
+  [[nodiscard]] double squared_ratio(std::size_t point, std::size_t end, std::span<const double> u) const;
+
+  FailureLimits limits_;
+  std::vector<double> least_limit2_;
+  std::vector<std::uint8_t> beyond_;
+  StretchLattice lattice_;
+  FindLongBonds find_long_bonds_ = nullptr;
+  double dissipated_ = 0;
+};
+
+}  // namespace riven
