@@ -18,10 +18,12 @@ struct Breakdown {
   std::string what;
 };
 
-/// What came of a state that the body was to go through.
+/// What a body lost on its way through a state.
 struct Passage {
+  std::size_t broken = 0;  // bonds
+  /// Their mean energy over that at which they break, less 1: how much too late a step found them.
+  double excess = 0;
   std::optional<Breakdown> breakdown{};
-  bool refused = false;
 };
 
 /// A result per point: `components` values each (9: a tensor row by row), point-major, in an SI unit, empty
@@ -56,12 +58,11 @@ class Model {
   [[nodiscard]] virtual std::optional<Breakdown> internal_force(std::span<const double> u,
                                                                 std::span<double> force) = 0;
 
-  /// The same where a state is one that the body goes through, not one that a solver only tries: what is
-  /// irreversible happens first, such as bonds that break. If a family would lose more than the share
-  /// `most_broken` of its bonds at once, nothing happens and the passage is refused.
-  [[nodiscard]] virtual Passage advance(std::span<const double> u, std::span<double> force,
-                                        double /*most_broken*/ = 1) {
-    return {.breakdown = internal_force(u, force)};
+  /// The state of the last `internal_force` is one that the body goes through, not one that a solver only
+  /// tried: what is irreversible happens, such as bonds that break. `force`: of that evaluation; brought up
+  /// to date.
+  [[nodiscard]] virtual Passage advance(std::span<const double> /*u*/, std::span<double> /*force*/) {
+    return {};
   }
   /// Energy (J) that `advance` has taken from the body so far.
   [[nodiscard]] virtual double dissipated_energy() const { return 0; }

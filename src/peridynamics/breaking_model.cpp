@@ -166,7 +166,10 @@ std::vector<BreakingModel::LongBond> BreakingModel::long_bonds(std::span<const d
         for (std::size_t i = begin; i < end; ++i) {
           if (beyond_[i / group()] == 0) continue;
           body().for_each_bond(i, [&](std::size_t bond, std::size_t j) {
-            if (squared_ratio(i, j, u) > limit2(i, j)) found[begin / kPiece].push_back({i, bond, j});
+            const double ratio2 = squared_ratio(i, j, u), limit2 = this->limit2(i, j);
+            if (!(ratio2 > limit2)) return;
+            const double part = (std::sqrt(ratio2) - 1) / (std::sqrt(limit2) - 1);
+            found[begin / kPiece].push_back({i, bond, j, part * part - 1});
           });
         }
       },
@@ -176,16 +179,10 @@ std::vector<BreakingModel::LongBond> BreakingModel::long_bonds(std::span<const d
   return bonds;
 }
 
-double BreakingModel::share_of_family(const std::vector<LongBond>& bonds) const {
-  double largest = 0;
-  for (std::size_t first = 0; first < bonds.size();) {
-    std::size_t last = first;
-    while (last < bonds.size() && bonds[last].point == bonds[first].point) ++last;
-    const double whole = body().whole_family[bonds[first].point];  // 0 for ghosts
-    if (whole > 0) largest = std::max(largest, static_cast<double>(last - first) / whole);
-    first = last;
-  }
-  return largest;
+Passage BreakingModel::passage(const std::vector<LongBond>& bonds) {
+  Passage passage{.broken = bonds.size()};
+  for (const LongBond& bond : bonds) passage.excess += bond.excess / static_cast<double>(bonds.size());
+  return passage;
 }
 
 /// Points of which too many bonds break lose them all.
@@ -200,7 +197,7 @@ void BreakingModel::add_points_to_lose(std::vector<LongBond>& bonds) const {
     const double whole = body().whole_family[i];
     if (whole > 0 && 1 - left / whole >= limits_.damage[body().material_of(i)])
       body().for_each_bond(i, [&](std::size_t bond, std::size_t j) {
-        if (limit2(i, j) < kNever) bonds.push_back({i, bond, j});
+        if (limit2(i, j) < kNever) bonds.push_back({i, bond, j, 0});
       });
     first = last;
   }
@@ -229,14 +226,15 @@ std::vector<std::size_t> BreakingModel::lose(std::vector<LongBond> bonds, std::s
   return points;
 }
 
-Passage BreakingModel::advance(std::span<const double> u, std::span<double> force, double most_broken) {
-  if (breaks()) {
-    look_for_long_bonds(u);
-    std::vector<LongBond> bonds = long_bonds(u);
-    if (share_of_family(bonds) > most_broken) return {.refused = true};
-    if (!bonds.empty()) lose(std::move(bonds), u);
-  }
-  return {.breakdown = internal_force(u, force)};
+Passage BreakingModel::advance(std::span<const double> u, std::span<double> force) {
+  if (!breaks()) return {};
+  look_for_long_bonds(u);
+  std::vector<LongBond> bonds = long_bonds(u);
+  Passage passage = BreakingModel::passage(bonds);
+  if (bonds.empty()) return passage;
+  lose(std::move(bonds), u);
+  passage.breakdown = internal_force(u, force);
+  return passage;
 }
 
 double BreakingModel::overload(std::span<const double> u) const {

@@ -12,8 +12,7 @@ namespace riven {
 /// bond takes with it is the energy that its two families lose in the state in which it breaks.
 class BreakingModel : public PointModel {
  public:
-  [[nodiscard]] Passage advance(std::span<const double> u, std::span<double> force,
-                                double most_broken) override;
+  [[nodiscard]] Passage advance(std::span<const double> u, std::span<double> force) override;
   [[nodiscard]] double dissipated_energy() const override { return dissipated_; }
   [[nodiscard]] double overload(std::span<const double> u) const override;
   void save(Snapshot& to) const override;
@@ -47,14 +46,14 @@ class BreakingModel : public PointModel {
   /// A bond of a point: offset of the stencil, or place in the list.
   struct LongBond {
     std::size_t point = 0, bond = 0, end = 0;
+    double excess = 0;  // squared ratio of its stretch to the limit, less 1
   };
   /// Bonds beyond their limit among the groups of points that `beyond` marks, ascending, each from one end or
   /// from both.
   [[nodiscard]] std::vector<LongBond> long_bonds(std::span<const double> u) const;
-  /// Largest share of a family among bonds.
-  [[nodiscard]] double share_of_family(const std::vector<LongBond>& bonds) const;
   /// Breaks bonds. Returns the points that have lost some, ascending.
   std::vector<std::size_t> lose(std::vector<LongBond> bonds, std::span<const double> u);
+  [[nodiscard]] static Passage passage(const std::vector<LongBond>& bonds);
 
   /// Of groups of points, blocks of eight on a lattice and single ones in a list: the least squared ratio of
   /// lengths at which one of their bonds breaks, and whether one may be beyond it.

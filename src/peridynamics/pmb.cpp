@@ -188,18 +188,18 @@ std::optional<Breakdown> Pmb::internal_force(std::span<const double> u, std::spa
   return std::nullopt;
 }
 
-/// The forces mark where bonds are too long; where some break, they are found again.
-Passage Pmb::advance(std::span<const double> u, std::span<double> force, double most_broken) {
-  static_cast<void>(internal_force(u, force));
+/// The forces have marked where bonds are too long; where some break, they are found again.
+Passage Pmb::advance(std::span<const double> u, std::span<double> force) {
   if (!breaks()) return {};
   const std::vector<LongBond> bonds = long_bonds(u);
-  if (share_of_family(bonds) > most_broken) return {.refused = true};
-  const std::vector<std::size_t> points = bonds.empty() ? std::vector<std::size_t>{} : lose(bonds, u);
+  if (bonds.empty()) return {};
+  const std::vector<std::size_t> points = lose(bonds, u);
+  look_at(u, force);
   const std::size_t group = body().on_lattice() != nullptr ? kLanes : 1;
   for (std::size_t n = 0; n < points.size(); ++n)
     if (n == 0 || points[n] / group != points[n - 1] / group)
       pull(points[n] / group * group, (points[n] / group + 1) * group);
-  return {};
+  return passage(bonds);
 }
 
 double Pmb::strain_energy(std::span<const double> u) {

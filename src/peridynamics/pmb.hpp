@@ -33,8 +33,7 @@ class Pmb final : public BreakingModel {
 
   [[nodiscard]] std::optional<Breakdown> internal_force(std::span<const double> u,
                                                         std::span<double> force) override;
-  [[nodiscard]] Passage advance(std::span<const double> u, std::span<double> force,
-                                double most_broken) override;
+  [[nodiscard]] Passage advance(std::span<const double> u, std::span<double> force) override;
   [[nodiscard]] double strain_energy(std::span<const double> u) override;
   [[nodiscard]] bool conservative() const override { return true; }
   void stiffness_bound(std::span<const double> u, std::span<double> bound) override;

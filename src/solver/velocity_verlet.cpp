@@ -35,6 +35,34 @@ struct Leg {
   }
 };
 
+/// How fast time goes on: by whole steps, or by parts of them while bonds break too late.
+class Pace {
+ public:
+  explicit Pace(double most_excess) : most_excess_(most_excess) {}
+  /// Of the step's length.
+  [[nodiscard]] double part() const { return 1.0 / static_cast<double>(1 << halvings_); }
+  [[nodiscard]] bool has_changed() const { return changed_; }
+  void look(const Passage& passage) {
+    changed_ = false;
+    if (passage.broken == 0 ? ++quiet_ < kPatience : passage.excess <= most_excess_) return;
+    const int before = halvings_;
+    halvings_ = passage.broken == 0 ? std::max(0, halvings_ - 1) : std::min(kMostHalvings, halvings_ + 1);
+    quiet_ = 0;
+    changed_ = halvings_ != before;
+  }
+  template <class Self, class Each>
+  static void each_member(Self& self, const Each& each) {
+    each("verlet.pace.halvings", self.halvings_);
+    each("verlet.pace.quiet", self.quiet_);
+  }
+
+ private:
+  static constexpr int kMostHalvings = 3, kPatience = 16;
+  double most_excess_;
+  int halvings_ = 0, quiet_ = 0;
+  bool changed_ = false;
+};
+
 /// Times at which something is written: multiples of an interval, and the end.
 class Schedule {
  public:
@@ -71,6 +99,7 @@ class Verlet {
     state_.u.assign(n_, 0.0);
     state_.v.assign(n_, 0.0);
     force_.assign(n_, 0.0);
+    internal_.assign(n_, 0.0);
     inverse_mass_.assign(n_, 0.0);
     model_.mass(inverse_mass_);
     for (std::size_t i = 0; i < n_; ++i)
@@ -97,6 +126,7 @@ class Verlet {
     each("verlet.next_estimate", self.next_estimate_);
     each("verlet.rest_energy", self.rest_energy_);
     Leg::each_member(self.leg_, each);
+    Pace::each_member(self.pace_, each);
     Schedule::each_member(self.outputs_, "verlet.outputs", each);
     Schedule::each_member(self.history_, "verlet.history", each);
   }
@@ -128,6 +158,7 @@ class Verlet {
     constraints_.apply(state_.u);
     if (settings_.rest_tolerance) come_to_rest();
     evaluate();
+    break_bonds();
     if (settings_.rest_tolerance && model_.dissipated_energy() > 0)
       throw SolverFailure(
           "bonds would break under the loads of time 0 already, before the motion starts; try smaller loads "
@@ -168,7 +199,7 @@ class Verlet {
     leg_.begin = state_.parameter;
     leg_.end = std::min(outputs_.next(), history_.next());
     const double left = leg_.end - leg_.begin;
-    leg_.steps = std::max(1L, static_cast<long>(std::ceil(left / step_ - 1e-9)));
+    leg_.steps = std::max(1L, static_cast<long>(std::ceil(left / (pace_.part() * step_) - 1e-9)));
     leg_.step = left / static_cast<double>(leg_.steps);
     leg_.done = 0;
   }
@@ -180,7 +211,7 @@ class Verlet {
     step(leg_.step, last ? leg_.end : leg_.begin + static_cast<double>(leg_.done) * leg_.step);
     if (look) look_around();
     if (last) write();
-    if ((look || last) && unfinished()) plan();
+    if ((look || last || pace_.has_changed()) && unfinished()) plan();
   }
 
   void tell_progress() const {
@@ -224,6 +255,21 @@ class Verlet {
     state_.energy.external_work += work_.since_last_call(constraints_, time);
     for (const auto& external : settings_.external)
       state_.energy.external_work += external->work(u_before_, before, state_.u, time);
+    break_bonds();
+  }
+
+  /// Bonds that the step has stretched too far have done their work in it, so that the balance stays as exact
+  /// as without them; they are gone from the next one on. Steps that find them late are followed by shorter
+  /// ones.
+  void break_bonds() {
+    const Passage passage = model_.advance(state_.u, internal_);
+    if (passage.breakdown) fail(*passage.breakdown);
+    if (passage.broken > 0) {
+      ++state_.evaluations;
+      take_forces();
+      work_.begin(constraints_, state_.parameter);
+    }
+    pace_.look(passage);
   }
 
   /// The motion of dv/dt = -c v, exact over each half step, before and after the step of the other forces
@@ -249,8 +295,16 @@ class Verlet {
 
   void evaluate() {
     ++state_.evaluations;
-    if (const auto breakdown = model_.advance(state_.u, force_).breakdown)
+    if (const auto breakdown = model_.internal_force(state_.u, internal_))
       fail(watchdog_.inspect(constraints_, state_.u, state_.u, state_.v).value_or(*breakdown));
+    take_forces();
+  }
+
+  /// All forces on the free entries, from the internal ones.
+  void take_forces() {
+    parallel_pieces(n_, [&](std::size_t begin, std::size_t end) {
+      std::copy_n(internal_.data() + begin, end - begin, force_.data() + begin);
+    });
     for (const auto& external : settings_.external)
       external->add(state_.u, state_.v, state_.parameter, force_);
     constraints_.reduce(force_);
@@ -341,7 +395,7 @@ class Verlet {
   std::size_t n_;
   State state_;
   WorkIntegral work_{WorkIntegral::Rule::trapezoidal};
-  std::vector<double> force_;
+  std::vector<double> internal_, force_;
   std::vector<double> u_before_;      // at the start of the step, where there are external forces
   std::vector<double> inverse_mass_;  // 0 where nothing is free to move
   double step_ = 0;
@@ -350,6 +404,7 @@ class Verlet {
   long next_estimate_ = 0;  // number of the step after which the stable step is estimated again
   double rest_energy_ = 0;  // that the model has without displacement (J)
   Leg leg_;
+  Pace pace_{settings_.excess};
   Schedule outputs_, history_;
 };
 

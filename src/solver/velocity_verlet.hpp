@@ -15,6 +15,9 @@ struct VelocityVerletSettings {
   std::optional<double>
       step;  // s; default: safety times the stable step, estimated again as the body deforms
   double safety = 0.8;
+  // Steps are halved, three times at the most, while the bonds that break in one hold more than this beyond
+  // the energy at which they should.
+  double excess = 0.1;
   std::vector<double> initial_u, initial_v;  // m, m/s, of the free entries; empty: 0
   ExternalForces external;
   double damping = 0;  // force per mass and velocity (1/s)

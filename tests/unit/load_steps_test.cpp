@@ -21,7 +21,7 @@ class BrittleSpring final : public PulledPoint {
     force[0] = -force[1];
     return std::nullopt;
   }
-  [[nodiscard]] Passage advance(std::span<const double> u, std::span<double> force, double) override {
+  [[nodiscard]] Passage advance(std::span<const double> u, std::span<double> force) override {
     broken_ = broken_ || (breaks && u[0] > 0.5);
     return {.breakdown = internal_force(u, force)};
   }
