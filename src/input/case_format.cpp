@@ -169,7 +169,9 @@ void check_load(const LoadInput& load, const Case& c, const Check& check) {
   check_parts(load.on, check);
   if (load.on.empty() && load.body_force.empty())
     check.fail("on", "missing; expected the edges or sets that the load acts on");
-  if (all_free(load.components())) check.fail("", "every entry is \"free\"; expected a load");
+  for (const char* key : {"displacement", "velocity", "traction", "body_force"})
+    if (check.given(key) && all_free(load.components()))
+      check.fail(key, "every entry is \"free\"; expected a load");
   if (load.layer && load.traction.empty()) check.fail("layer", "belongs to traction");
   const std::vector<std::string> edges = edge_names(c);
   for (const Named& name : load.on) {

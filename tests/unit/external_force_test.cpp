@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <string>
 
 #include "body/lattice_body.hpp"
 #include "load/distributed_force.hpp"
@@ -115,12 +118,14 @@ TEST(Traction, SumsUpToAreaTimesTractionAndLessWhereAHoleCutsTheEdge) {
     EXPECT_NEAR(force.total(2)[0], 8e6 * body.faces[1] * body.face_area(1), 1e-3);
     EXPECT_EQ(force.total(2)[1], 0);
   }
-  // A hole of radius 0.125 around the middle of the edge takes half of the points.
+  // A hole of radius 0.125 around the middle of the edge leaves the layer less its mean chord there.
   const Pmb notched = bar({{Disc{{body.faces[1], 0, 0}, 0.125}}, {}, {}});
   const auto left = edge_shares(notched.body(), 1, body.spacing);
   double area = 0;
   for (const LoadShare& share : left) area += share.extent;
-  EXPECT_NEAR(area, 0.5 * body.face_area(1), 1e-12);
+  const double r = 0.125, h = body.spacing;
+  const double chord = (h * std::sqrt(r * r - h * h) + r * r * std::asin(h / r)) / h;
+  EXPECT_NEAR(area, 0.7 * (0.5 - chord), 1e-14);  // cut cells are measured exactly; 1e-16
 }
 
 ExternalForces pull(const Body& body, double stress, const std::function<double(double)>& course) {
@@ -178,11 +183,11 @@ TEST(Traction, StretchesABarByStressOverModulusInStatics) {
                .tolerance = 1e-5,
                .external = pull(model.body(), 1e6, [](double stretch) { return stretch - 1; })},
               nobody, nullptr);
-    // Points of free edges lack bonds: a bar 20 points wide is softer than the material, by about a horizon
-    // over the width (0.15).
-    EXPECT_GT(middle_strain(model.body(), state.u), 1e-3);
-    EXPECT_LT(middle_strain(model.body(), state.u), 1.15e-3);
-    EXPECT_LT(constraints.reaction_norm(), 1);        // of 5e5 N: nothing needs holding
+    // Points of free edges lack bonds, which the model makes up for in part: measured 0.5 % too soft.
+    EXPECT_NEAR(middle_strain(model.body(), state.u), 1e-3, 1e-5);
+    // Nothing needs holding: 1e-5 of the applied forces is left at 800 points, whose sum and moment (over the
+    // 0.2 m between the points held) the constraints take; measured 81 N of 3.5e5 N.
+    EXPECT_LT(constraints.reaction_norm(), 350);
     EXPECT_LT(std::abs(state.energy.error()), 1e-2);  // the response is all but linear
   }
 }

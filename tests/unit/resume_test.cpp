@@ -134,7 +134,7 @@ const std::vector<SolverCase>& solvers() {
          settings.initial_v.assign(p.model->dofs(), 0.1);
          return march(*p.model, *p.constraints, settings, observer, from);
        }},
-      {"VerletFromRestDampedWithVelocityAndTraction", true,
+      {"VerletDampedWithVelocityAndTraction", true,
        [](Problem& p, Observer& observer, const Snapshot* from) {
          const Body& body = p.model->body();
          for (const std::size_t i : body.points)
@@ -144,8 +144,7 @@ const std::vector<SolverCase>& solvers() {
                                             body.position(i), 1, 1, 1, true}}});
          VelocityVerletSettings settings{.until = 1.3, .every = 0.5, .history_every = 0.17};
          settings.damping = 0.7;
-         settings.rest_tolerance = 1e-3;
-         const auto traction = [](const Point&, double t) { return 0.001 + 0.1 * t; };
+          const auto traction = [](const Point&, double t) { return 0.001 + 0.1 * t; };
          settings.external = {std::make_shared<DistributedForce>(
              DistributedForce::Density{traction}, edge_shares(body, 1, body.spacing), body.size())};
          return march(*p.model, *p.constraints, settings, observer, from);
