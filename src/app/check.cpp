@@ -77,6 +77,21 @@ void print_fields(const Case& input) {
                field.field->value().values.size(), range(field.field->value()));
 }
 
+/// What tractions and body forces sum up to, at the start and at the end.
+void print_forces(const Simulation& simulation) {
+  const SolverInput& solver = simulation.input.solver;
+  const bool in_time = simulation.parameter == Parameter::time;
+  const auto text = [&](const Point& force) {
+    return fmt::format("({:.6g}) N",
+                       fmt::join(force.begin(), force.begin() + simulation.body->dimension, ", "));
+  };
+  for (const AppliedForce& applied : simulation.applied)
+    fmt::print("# {} on {}: {} in all at the start, {} at the end\n",
+               applied.face ? "traction" : "body force", applied.on.empty() ? "the body" : applied.on,
+               text(applied.force->total(in_time ? 0 : 1)),
+               text(applied.force->total(in_time ? solver.until : solver.stretch.back())));
+}
+
 std::string extent_text(const Body& body) {
   std::string text;
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(body.dimension); ++axis)
@@ -110,6 +125,7 @@ void print_model(const Simulation& simulation) {
     if (is_complete(in)) fmt::print("# material {}: {}\n", in.name, moduli_text(make_material(in)));
   for (const std::string& line : model.describe()) fmt::print("# {}\n", line);
   print_sets(simulation);
+  print_forces(simulation);
   print_initial("displacement", "m", simulation.initial_u, simulation);
   print_initial("velocity", "m/s", simulation.initial_v, simulation);
 }

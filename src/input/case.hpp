@@ -142,10 +142,19 @@ struct ComponentInput {
   std::optional<Expression> value;  // nothing: "free"
 };
 
-struct LoadInput {                           // [[load]]
-  std::vector<Named> on;                     // named edges of the box or sets
-  std::vector<ComponentInput> displacement;  // one per dimension
+struct LoadInput {        // [[load]]: exactly one of the four, with one entry per dimension
+  std::vector<Named> on;  // named edges of the box or sets; of a body force: empty for the whole body
+  std::vector<ComponentInput> displacement, velocity, traction, body_force;
+  std::optional<double> layer;  // m; of a traction, the spacing unless given
   Location at;
+
+  [[nodiscard]] bool is_force() const { return !traction.empty() || !body_force.empty(); }
+  /// The one that is given.
+  [[nodiscard]] const std::vector<ComponentInput>& components() const {
+    for (const auto* given : {&velocity, &traction, &body_force})
+      if (!given->empty()) return *given;
+    return displacement;
+  }
 };
 
 struct InitialInput {                                  // [[initial]]
@@ -166,6 +175,9 @@ struct SolverInput {   // [solver]
   Location until_at;
   std::optional<double> step;  // s; default: from the stable step
   double safety = 0.8;
+  double damping = 0;             // 1/s
+  std::string start = "initial";  // or "equilibrium"
+  double start_tolerance = 1e-5;  // as `tolerance`, of that equilibrium
   Location at;
 };
 

@@ -162,21 +162,53 @@ bool all_free(const std::vector<ComponentInput>& components) {
                       [](const ComponentInput& component) { return component.value.has_value(); });
 }
 
-Format describe(LoadInput& load) {
+// Of N/m^3, and of 1/s.
+constexpr Dimension force_density{.metre = -2, .second = -2, .kilogram = 1};
+constexpr Dimension rate{.second = -1};
+
+void check_load(const LoadInput& load, const Case& c, const Check& check) {
+  check_parts(load.on, check);
+  if (load.on.empty() && load.body_force.empty())
+    check.fail("on", "missing; expected the edges or sets that the load acts on");
+  for (const char* key : {"displacement", "velocity", "traction", "body_force"})
+    if (check.given(key) && all_free(load.components()))
+      check.fail(key, "every entry is \"free\"; expected a load");
+  if (load.layer && load.traction.empty()) check.fail("layer", "belongs to traction");
+  const std::vector<std::string> edges = edge_names(c);
+  for (const Named& name : load.on) {
+    const bool edge = std::find(edges.begin(), edges.end(), name.text) != edges.end();
+    if (!edge && !load.traction.empty())
+      check.fail("on", fmt::format("\"{}\" is a set, and a traction acts on an edge; expected {}, or "
+                                   "body_force instead of traction",
+                                   name.text, listed(edges)));
+    if (edge && !load.body_force.empty())
+      check.fail("on", fmt::format("\"{}\" is an edge, and a body force acts on points; expected a set, "
+                                   "nothing for the whole body, or traction instead of body_force",
+                                   name.text));
+  }
+}
+
+Format describe(LoadInput& load, const Case& c) {
   return {.doc = "What is prescribed on an edge or a set.",
           .at = &load.at,
           .keys = {Key{"on", Parts{&load.on},
-                       "An edge (left, right, bottom, top, back, front) or a set, or a list of them."}
-                       .required(),
+                       "An edge (left, right, bottom, top, back, front) or a set, or a list of them. Only a "
+                       "body_force may do without: it then acts on the whole body."},
                    Key{"displacement", Components{&load.displacement},
                        "One entry per direction: \"free\" or a length, a formula of x, y, z and stretch "
-                       "(statics) or t (Verlet)."}
-                       .required()},
-          .finish = [&load](const Check& check) {
-            check_parts(load.on, check);
-            if (all_free(load.displacement))
-              check.fail("displacement", "every entry is \"free\"; expected a load");
-          }};
+                       "(statics) or t (Verlet)."},
+                   Key{"velocity", Components{&load.velocity, dimension::velocity},
+                       "The same for a velocity, from zero displacement at time 0 on."}
+                       .applies(method(c, verlet)),
+                   Key{"traction", Components{&load.traction, dimension::pressure},
+                       "The same for a force per undeformed area of an edge; \"free\" and 0 are no force."},
+                   Key{"body_force", Components{&load.body_force, force_density},
+                       "The same for a force per undeformed volume of a set, or of the whole body."},
+                   Key{"layer", Quantity{&load.layer, dimension::length, positive},
+                       "Points this near to the edge carry its traction, in proportion to their volumes; "
+                       "geometry.spacing unless given."}},
+          .groups = {{{"displacement", "velocity", "traction", "body_force"}}},
+          .finish = [&load, &c](const Check& check) { check_load(load, c, check); }};
 }
 
 Format describe(InitialInput& initial, const Case& c) {
@@ -257,7 +289,21 @@ Format describe(SolverInput& s) {
            Key{"safety", Quantity{&s.safety, dimension::none, fraction},
                "Part of the stable step that is used."}
                .applies(in_time)
-               .otherwise("0.8")},
+               .otherwise("0.8"),
+           Key{"damping", Quantity{&s.damping, rate, not_negative},
+               "Force against the velocity, per mass and velocity: a free motion decays as exp(-damping t)."}
+               .applies(in_time)
+               .otherwise("0"),
+           Key{"start", Text{&s.start, {"initial", "equilibrium"}},
+               "The undeformed state or what [[initial]] says, or the equilibrium under the loads of time 0, "
+               "by dynamic relaxation, with velocity 0."}
+               .applies(in_time)
+               .otherwise("\"initial\""),
+           Key{"start_tolerance", Quantity{&s.start_tolerance, dimension::none, fraction},
+               "L2 norm of the free forces over those of constraints and loads, at which that equilibrium is "
+               "reached."}
+               .applies(When{"start", &s.start, {"equilibrium"}})
+               .otherwise("1e-5")},
       .finish = [&s](const Check& check) {
         check_stretch(s.stretch, check);
         if (s.stretch.empty()) {
@@ -467,7 +513,7 @@ Format describe(Case& c) {
                tables(c.interfaces, [&c](InterfaceInput& i, std::size_t) { return describe(i, c); }),
                "Between materials."},
            Key{"failure", Table{[&c] { return describe(c.failure, c); }, always}, "Failure."}.otherwise("{}"),
-           Key{"load", tables(c.loads, [](LoadInput& l, std::size_t) { return describe(l); }), "Loads."},
+           Key{"load", tables(c.loads, [&c](LoadInput& l, std::size_t) { return describe(l, c); }), "Loads."},
            Key{"initial", tables(c.initials, [&c](InitialInput& i, std::size_t) { return describe(i, c); }),
                "Initial conditions. Relaxation starts undeformed, since its states do not depend on where "
                "it starts."}

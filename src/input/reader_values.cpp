@@ -171,8 +171,9 @@ ComponentInput Reader::component(const kind::Components& of, const toml::node& n
     if (*number != 0) origin.fail(needs_unit(fmt::format("{}", *number), of.dimension));
     return {Expression("0", "0", origin.at)};
   }
-  const std::string sample =
-      of.at_start ? fmt::format("10 {}", usual_unit(of.dimension)) : std::string("(stretch - 1)*x");
+  const std::string sample = of.at_start || of.dimension != dimension::length
+                                 ? fmt::format("10 {}", usual_unit(of.dimension))
+                                 : std::string("(stretch - 1)*x");
   const std::string& text =
       string_of(node, origin, fmt::format("\"free\", 0 or {} such as \"{}\"", named(of.dimension), sample));
   if (text == "free") return {};

@@ -37,8 +37,8 @@ void add_mirror_constraints(const Body& body, const std::array<std::optional<Fac
         if (given) {
           Point on_face = x;
           on_face[axis_of(face)] = plane;
-          constraint.terms.push_back(
-              {*given, on_face, static_cast<int>(component), 2 * constraint.sign, faces[face]->load});
+          constraint.terms.push_back({*given, on_face, static_cast<int>(component), 2 * constraint.sign,
+                                      faces[face]->load, faces[face]->rate[component]});
           constraint.sign = -constraint.sign;
         }
         x[axis_of(face)] = 2 * plane - x[axis_of(face)];

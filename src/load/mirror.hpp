@@ -8,10 +8,11 @@
 
 namespace riven {
 
-/// Displacement prescribed on a face: a function per given component; other components are free.
+/// Displacement or velocity prescribed on a face: a function per given component; other components are free.
 struct FaceLoad {
   std::array<std::optional<LoadFunction>, 3> displacement;
-  std::size_t load = 0;  // number under which reactions are collected
+  std::size_t load = 0;        // number under which reactions are collected
+  std::array<bool, 3> rate{};  // the function is a velocity, as in `PrescribedTerm`
 };
 
 /// Makes the ghost points of a body follow their masters so that every mirrored face has its

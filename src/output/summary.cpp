@@ -25,6 +25,11 @@ double number(const Json& object, const char* key) {
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
 }
 
+/// 0 where a result of an earlier version says nothing.
+double optional_number(const Json& object, const char* key) {
+  return object.contains(key) ? number(object, key) : 0;
+}
+
 Json to_json(const Metrics& metrics) {
   Json object = Json::object();
   for (const auto& [name, metric] : metrics)
@@ -64,13 +69,16 @@ Json to_json(const EnergySummary& energy) {
   return {{"kinetic", number(energy.kinetic)},
           {"strain", number(energy.strain)},
           {"dissipated", number(energy.dissipated)},
+          {"damped", number(energy.damped)},
+          {"held", number(energy.held)},
           {"external_work", number(energy.external_work)},
           {"balance_error", number(energy.balance_error)}};
 }
 
 EnergySummary energy_from(const Json& object) {
-  return {number(object, "kinetic"), number(object, "strain"), number(object, "dissipated"),
-          number(object, "external_work"), number(object, "balance_error")};
+  return {number(object, "kinetic"),         number(object, "strain"),        number(object, "dissipated"),
+          optional_number(object, "damped"), optional_number(object, "held"), number(object, "external_work"),
+          number(object, "balance_error")};
 }
 
 RunStatus status_from(const std::string& text) {

@@ -46,6 +46,8 @@ struct EnergySummary {
   double kinetic = std::numeric_limits<double>::quiet_NaN();
   double strain = std::numeric_limits<double>::quiet_NaN();
   double dissipated = std::numeric_limits<double>::quiet_NaN();  // by damage
+  double damped = std::numeric_limits<double>::quiet_NaN();      // by the solver's damping
+  double held = std::numeric_limits<double>::quiet_NaN();        // by external forces, such as contacts
   double external_work = std::numeric_limits<double>::quiet_NaN();
   double balance_error = std::numeric_limits<double>::quiet_NaN();  // relative
 };

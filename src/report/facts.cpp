@@ -37,6 +37,8 @@ void add_energies(const EnergySummary& energy, std::vector<Fact>& facts) {
   add("kinetic energy", energy.kinetic);
   add("strain energy", energy.strain);
   add("dissipated energy", energy.dissipated);
+  if (energy.damped != 0) add("damped energy", energy.damped);
+  if (energy.held != 0) add("energy held by external forces", energy.held);
   add("initial energy and work of the loads", energy.external_work);
   if (std::isfinite(energy.balance_error))
     facts.push_back({"error of the energy balance", fmt::format("{:.1e}", energy.balance_error)});

@@ -80,12 +80,12 @@ Defects make_defects(const Case& in) {
   return defects;
 }
 
-/// Faces that some load displaces.
+/// Faces that some load moves.
 Faces loaded_faces(const Case& in) {
   Faces faces;
   for (const LoadInput& load : in.loads)
     for (const Named& name : load.on)
-      if (const auto face = Simulation::face(name.text)) faces.set(*face);
+      if (const auto face = Simulation::face(name.text); face && !load.is_force()) faces.set(*face);
   return faces;
 }
 

@@ -28,7 +28,11 @@ class LoadBuilder {
       : simulation_(simulation), model_(model), body_(model.body()), loaded_(model.dofs(), false) {}
 
   void build() {
-    for (const LoadInput& load : simulation_.input.loads)
+    for (const LoadInput& load : simulation_.input.loads) {
+      if (load.is_force()) {
+        apply_force(load);
+        continue;
+      }
       for (const Named& on : load.on) {
         if (const auto face = Simulation::face(on.text)) {
           displace_face(load, *face, on);
@@ -36,23 +40,72 @@ class LoadBuilder {
           displace_set(load, on);
         }
       }
+    }
     for (std::size_t face = 0; face < kFaces; ++face) check_face(face);
     add_mirror_constraints(body_, faces_, model_.conservative(), *simulation_.constraints);
     hold_fixed_inclusions();
   }
 
  private:
+  void apply_force(const LoadInput& load) {
+    for (const Named& on : load.on)
+      if (const auto face = Simulation::face(on.text))
+        pull_face(load, *face, on);
+      else
+        act_on(load, on.text, simulation_.set(on.text).points);
+    if (!load.on.empty()) return;
+    std::vector<std::size_t> all(body_.points.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    act_on(load, "", all);
+  }
+
+  void pull_face(const LoadInput& load, std::size_t face, const Named& on) {
+    if (pulled_.test(face))
+      throw InputError(on.at, fmt::format("load: the edge \"{}\" has two tractions; expected one", on.text));
+    pulled_.set(face);
+    const double layer = load.layer.value_or(body_.spacing);
+    std::vector<LoadShare> shares = edge_shares(body_, face, layer);
+    if (shares.empty())
+      throw InputError(on.at,
+                       fmt::format("load: no point of the body lies within {:g} m of the edge \"{}\" at "
+                                   "{} = {:g} m; expected a larger layer",
+                                   layer, on.text, "xyz"[face / 2], body_.faces[face]));
+    add_force(load, {face, on.text, nullptr}, std::move(shares));
+  }
+
+  void act_on(const LoadInput& load, const std::string& set, const std::vector<std::size_t>& numbers) {
+    std::vector<LoadShare> shares;
+    for (const std::size_t number : numbers) {
+      const std::size_t point = body_.points[number];
+      shares.push_back({point, body_.position(point), body_.volume[point]});
+    }
+    add_force(load, {std::nullopt, set, nullptr}, std::move(shares));
+  }
+
+  void add_force(const LoadInput& load, AppliedForce applied, std::vector<LoadShare> shares) {
+    DistributedForce::Density density;
+    for (std::size_t axis = 0; axis < load.components().size(); ++axis)
+      if (const auto& value = load.components()[axis].value)
+        density[axis] = make_function(*value, simulation_.parameter);
+    const auto force =
+        std::make_shared<DistributedForce>(std::move(density), std::move(shares), body_.size());
+    applied.force = force;
+    simulation_.applied.push_back(std::move(applied));
+    simulation_.external.push_back(force);
+  }
+
   void displace_face(const LoadInput& load, std::size_t face, const Named& on) {
     if (!faces_[face]) faces_[face] = FaceLoad{.displacement = {}, .load = face};
     face_at_[face] = on.at;
-    for (std::size_t axis = 0; axis < load.displacement.size(); ++axis) {
-      const auto& value = load.displacement[axis].value;
+    for (std::size_t axis = 0; axis < load.components().size(); ++axis) {
+      const auto& value = load.components()[axis].value;
       if (!value) continue;
       auto& given = faces_[face]->displacement[axis];
       if (given)
         throw InputError(
             on.at, fmt::format("load: the edge \"{}\" is displaced twice along {}", on.text, "xyz"[axis]));
       given = make_function(*value, simulation_.parameter);
+      faces_[face]->rate[axis] = !load.velocity.empty();
     }
   }
 
@@ -60,6 +113,11 @@ class LoadBuilder {
   /// zero.
   void check_face(std::size_t face) const {
     if (!faces_[face]) return;
+    if (pulled_.test(face))
+      throw InputError(face_at_[face],
+                       fmt::format("load: the edge \"{}\" has a traction and is moved too; expected one of "
+                                   "both, or a set of points to be moved",
+                                   kFaceNames[face]));
     const bool holds = std::any_of(body_.ghosts.begin(), body_.ghosts.end(),
                                    [&](const GhostPoint& ghost) { return ghost.faces.test(face); });
     if (!holds)
@@ -78,8 +136,8 @@ class LoadBuilder {
 
   void displace_set(const LoadInput& load, const Named& on) {
     const PointSet& set = simulation_.set(on.text);
-    for (std::size_t axis = 0; axis < load.displacement.size(); ++axis) {
-      const auto& value = load.displacement[axis].value;
+    for (std::size_t axis = 0; axis < load.components().size(); ++axis) {
+      const auto& value = load.components()[axis].value;
       if (!value) continue;
       const LoadFunction function = make_function(*value, simulation_.parameter);
       for (const std::size_t point : set.points) {
@@ -92,7 +150,8 @@ class LoadBuilder {
         loaded_[dof] = true;
         simulation_.constraints->add(
             {.slave = dof,
-             .terms = {{function, body_.position(body_.points[point]), static_cast<int>(axis), 1, kFaces}}});
+             .terms = {{function, body_.position(body_.points[point]), static_cast<int>(axis), 1, kFaces,
+                        !load.velocity.empty()}}});
       }
     }
   }
@@ -115,6 +174,7 @@ class LoadBuilder {
   const Body& body_;
   std::array<std::optional<FaceLoad>, kFaces> faces_;
   std::array<Location, kFaces> face_at_;
+  Faces pulled_;              // faces with a traction
   std::vector<bool> loaded_;  // entries that a set's load has taken
 };
 

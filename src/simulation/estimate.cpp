@@ -138,11 +138,12 @@ double measured_evaluation(Model& model) {
   return *middle;
 }
 
-/// Whether a load acts on one of the two edges across an axis.
+/// Whether a load moves one of the two edges across an axis.
 bool is_loaded(const Case& input, std::size_t axis) {
   for (const LoadInput& load : input.loads)
     for (const Named& on : load.on)
-      if (const auto face = Simulation::face(on.text); face && *face / 2 == axis) return true;
+      if (const auto face = Simulation::face(on.text); face && !load.is_force() && *face / 2 == axis)
+        return true;
   return false;
 }
 

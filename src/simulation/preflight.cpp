@@ -170,7 +170,7 @@ void check_data(const Simulation& simulation) {
   const auto& loads = simulation.input.loads;
   const auto first_that = [&loads](bool (Expression::*does)() const) {
     return std::find_if(loads.begin(), loads.end(), [does](const LoadInput& load) {
-      return std::any_of(load.displacement.begin(), load.displacement.end(),
+      return std::any_of(load.components().begin(), load.components().end(),
                          [does](const ComponentInput& c) { return c.value && ((*c.value).*does)(); });
     });
   };
@@ -182,8 +182,14 @@ void check_data(const Simulation& simulation) {
   for (const double value : values) {
     simulation.constraints->set_parameter(value);
     const auto offsets = simulation.constraints->offsets();
-    if (!std::all_of(offsets.begin(), offsets.end(), [](double u) { return std::isfinite(u); }))
-      throw InputError(first->at, fmt::format("load: the displacement is no finite number at {} {:g}",
+    const auto finite = [](double x) { return std::isfinite(x); };
+    bool all = std::all_of(offsets.begin(), offsets.end(), finite);
+    for (const AppliedForce& applied : simulation.applied) {
+      const Point total = applied.force->total(value);
+      all = all && std::all_of(total.begin(), total.end(), finite);
+    }
+    if (!all)
+      throw InputError(first->at, fmt::format("load: its value is no finite number at {} {:g}",
                                               name(simulation.parameter), value));
   }
 }
@@ -389,7 +395,7 @@ std::vector<std::string> warnings(const Simulation& simulation) {
     list.emplace_back("there is no load: nothing will move");
   if (simulation.input.probes.empty())
     list.emplace_back("there is no probe: history.csv and the metrics will be empty");
-  if (jumps_at_start(simulation))
+  if (simulation.input.solver.start != "equilibrium" && jumps_at_start(simulation))
     list.push_back(fmt::format("the loads are not zero at {}: the body starts with a jump",
                                simulation.parameter == Parameter::time ? "time 0" : "stretch 1"));
   if (simulation.input.geometry.points) {

@@ -113,9 +113,11 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
     };
     const auto face = Simulation::face(probe.on.text);
     if (probe.kind == "reaction")
-      add(face ? constraints.reaction(*face) : reaction_of(simulation_.set(probe.on.text), constraints), 1);
+      add(face ? force_on(*face, state, constraints)
+               : reaction_of(simulation_.set(probe.on.text), constraints),
+          1);
     if (probe.kind == "nominal-stress" && face)
-      add(constraints.reaction(*face), simulation_.body->face_area(*face));
+      add(force_on(*face, state, constraints), simulation_.body->face_area(*face));
     if (probe.kind == "nominal-stress" && !face) {
       const std::array<double, 9> stress = mean_stress(simulation_.set(probe.on.text), state.u);
       values.insert(values.end(), {stress[0], stress[1], stress[3], stress[4]});
@@ -127,6 +129,13 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
                        distance_between(*probe.from, *probe.to));
   }
   return values;
+}
+
+/// What moves the edge, or the traction on it, exerts.
+Point Probes::force_on(std::size_t face, const State& state, const Constraints& constraints) const {
+  for (const AppliedForce& applied : simulation_.applied)
+    if (applied.face == face) return applied.force->total(state.parameter);
+  return constraints.reaction(face);
 }
 
 /// External force on the points of a set, whichever load holds them.

@@ -25,6 +25,7 @@ class Probes {
 
  private:
   void add_columns(const ProbeInput& probe);
+  [[nodiscard]] Point force_on(std::size_t face, const State& state, const Constraints& constraints) const;
   [[nodiscard]] Point reaction_of(const PointSet& set, const Constraints& constraints) const;
   [[nodiscard]] std::array<double, 9> mean_stress(const PointSet& set, std::span<const double> u) const;
 

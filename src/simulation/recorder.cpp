@@ -29,7 +29,8 @@ HistoryWriter open_history(const std::filesystem::path& path, Parameter paramete
 }
 
 const std::vector<HistoryColumn> kEnergyColumns = {
-    {"kinetic", "J"}, {"strain", "J"}, {"dissipated", "J"}, {"external_work", "J"}, {"balance_error", ""}};
+    {"kinetic", "J"}, {"strain", "J"},        {"dissipated", "J"},  {"damped", "J"},
+    {"held", "J"},    {"external_work", "J"}, {"balance_error", ""}};
 
 double seconds_since(Recorder::Clock::time_point start) {
   return std::chrono::duration<double>(Recorder::Clock::now() - start).count();
@@ -153,8 +154,8 @@ void Recorder::reached(const State& state, const Constraints& constraints, bool 
   last_values_ = probes_.evaluate(state, constraints);
   history_.add(state.parameter, last_values_);
   const EnergySummary now = energy();
-  energy_.add(state.parameter,
-              std::array{now.kinetic, now.strain, now.dissipated, now.external_work, now.balance_error});
+  energy_.add(state.parameter, std::array{now.kinetic, now.strain, now.dissipated, now.damped, now.held,
+                                          now.external_work, now.balance_error});
   log_.detail(fmt::format("{} {:.6g}: {} force evaluations, strain energy {:.8g} J, energy balance {:.2e}",
                           name(simulation_.parameter), state.parameter, state.evaluations, now.strain,
                           now.balance_error));
@@ -217,7 +218,7 @@ EnergySummary Recorder::energy() const {
   const EnergyBalance& is = last_.energy;
   const double error =
       simulation_.model->conservative() ? is.error() : std::numeric_limits<double>::quiet_NaN();
-  return {is.kinetic, is.strain, is.dissipated, is.external_work, error};
+  return {is.kinetic, is.strain, is.dissipated, is.damped, is.held, is.external_work, error};
 }
 
 Summary Recorder::summary() const {

@@ -34,12 +34,16 @@ State solve(const Simulation& simulation, Observer& observer, const Snapshot* fr
     settings.history_every = out.history_every.value_or(settings.every);
     settings.initial_u = simulation.initial_u;
     settings.initial_v = simulation.initial_v;
+    settings.external = simulation.external;
+    settings.damping = in.damping;
+    if (in.start == "equilibrium") settings.rest_tolerance = in.start_tolerance;
     return march(*simulation.model, *simulation.constraints, settings, observer, from);
   }
   const LoadStepSettings settings{.targets = in.stretch,
                                   .increment = in.increment,
                                   .tolerance = in.tolerance,
-                                  .max_iterations = in.max_iterations};
+                                  .max_iterations = in.max_iterations,
+                                  .external = simulation.external};
   const auto solve_statics = in.method == "newton" ? newton : relax;
   return solve_statics(*simulation.model, *simulation.constraints, settings, observer, from);
 }

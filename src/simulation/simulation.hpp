@@ -7,6 +7,7 @@
 #include "body/body.hpp"
 #include "input/case.hpp"
 #include "load/constraints.hpp"
+#include "load/distributed_force.hpp"
 #include "model/model.hpp"
 #include "output/parameter.hpp"
 
@@ -21,6 +22,13 @@ struct PointSet {
 /// The set of that name. The input layer has checked that it exists.
 const PointSet& find_set(const std::vector<PointSet>& sets, const std::string& name);
 
+/// A traction on an edge (its number), or a body force on a set (nothing: the whole body).
+struct AppliedForce {
+  std::optional<std::size_t> face;
+  std::string on;
+  std::shared_ptr<const DistributedForce> force;
+};
+
 /// Everything a run needs, built from a case. Reactions are collected under 0 to 5 for the faces, and under 6
 /// for points and inclusions that are held.
 struct Simulation {
@@ -30,6 +38,8 @@ struct Simulation {
   const Body* body = nullptr;  // the model's
   std::unique_ptr<Constraints> constraints;
   std::vector<PointSet> sets;
+  std::vector<AppliedForce> applied;
+  ExternalForces external;                   // these, and whatever else acts from outside of the model
   std::vector<double> initial_u, initial_v;  // m, m/s: initial conditions; empty without any
 
   /// Number of a face by its name, or nothing.

@@ -170,8 +170,8 @@ class Contents(ReportTest):
             for key, value in energy.items():
                 self.assertEqual(float(rows[-1].get(f"{key} [J]", rows[-1].get(key))), value, key)
             for row in rows:
-                parts = [float(row[f"{key} [J]"]) for key in ("kinetic", "strain", "dissipated", "external_work")]
-                error = sum(parts[:3]) - parts[3]
+                parts = [float(row[f"{key} [J]"]) for key in ("kinetic", "strain", "dissipated", "damped", "held", "external_work")]
+                error = sum(parts[:-1]) - parts[-1]
                 # The scale is the largest energy so far, at least the largest of this row; rounding aside.
                 self.assertLessEqual(abs(float(row["balance_error"])) * max(map(abs, parts)), abs(error) + 1e-12 * max(parts))
             with open(self.top / "results" / name / "history.csv", newline="", encoding="utf-8") as file:

@@ -41,7 +41,7 @@ class Results(ProgramTest):
             self.assertAlmostEqual(force["value"] / plain_force(state["stretch"]), 1, delta=1e-7)
         self.assertEqual(summary["metrics"], summary["states"][-1]["metrics"])
         energy = summary["energy"]
-        self.assertEqual(set(energy), {"kinetic", "strain", "dissipated", "external_work", "balance_error"})
+        self.assertEqual(set(energy), {"kinetic", "strain", "dissipated", "damped", "held", "external_work", "balance_error"})
         # W = C10 (2 s^2 + s^-4 - 3) over the volume.
         strain = 1e6 * (2 * 1.4**2 + 1.4**-4 - 3) * 0.2 * 0.2 * 0.01
         self.assertAlmostEqual(energy["strain"] / strain, 1, delta=1e-7)

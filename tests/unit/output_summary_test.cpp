@@ -24,7 +24,7 @@ Summary example() {
   summary.instruction_set = "avx2";
   summary.metrics = {{"reaction_x", {210352.0 / 3, "N"}}, {"branches", {2, ""}}};
   summary.states = {{1.1, {{"reaction_x", {1e-300, "N"}}}}, {1.5, {}}};
-  summary.energy = {0.1, 1.0 / 3, 0, 0.4, 1e-7};
+  summary.energy = {0.1, 1.0 / 3, 0, 0.02, 0.03, 0.4, 1e-7};
   summary.timing = {12.5, 8, 2400, 40000, 1120000, 3.1e9};
   summary.memory_peak_bytes = std::int64_t{5} << 32;
   return summary;
@@ -43,6 +43,8 @@ TEST(Summary, HasTheKeysThatAreDocumented) {
   EXPECT_EQ(object["states"][0]["stretch"], 1.1);
   EXPECT_EQ(object["states"][0]["metrics"]["reaction_x"]["value"], 1e-300);
   EXPECT_TRUE(object["states"][1]["metrics"].is_object());
+  EXPECT_EQ(object["energy"]["damped"], 0.02);
+  EXPECT_EQ(object["energy"]["held"], 0.03);
   EXPECT_EQ(object["energy"]["external_work"], 0.4);
   EXPECT_EQ(object["energy"]["balance_error"], 1e-7);
   EXPECT_EQ(object["timing"]["wall_s"], 12.5);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <memory>
@@ -10,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "body/listed_body.hpp"
+#include "load/distributed_force.hpp"
 #include "peridynamics/bond_membrane.hpp"
 #include "peridynamics/correspondence.hpp"
 #include "peridynamics/lps.hpp"
@@ -132,6 +134,21 @@ const std::vector<SolverCase>& solvers() {
        [](Problem& p, Observer& observer, const Snapshot* from) {
          VelocityVerletSettings settings{.until = 0.4, .every = 0.2, .history_every = 0.03, .step = 0.0021};
          settings.initial_v.assign(p.model->dofs(), 0.1);
+         return march(*p.model, *p.constraints, settings, observer, from);
+       }},
+      {"VerletDampedWithVelocityAndTraction", true,
+       [](Problem& p, Observer& observer, const Snapshot* from) {
+         const Body& body = p.model->body();
+         for (const std::size_t i : body.points)
+           if (body.position(i)[0] < -0.3)
+             p.constraints->add({.slave = body.size() + i,
+                                 .terms = {{[](const Point& x, double t) { return 0.1 * std::sin(t + x[1]); },
+                                            body.position(i), 1, 1, 1, true}}});
+         VelocityVerletSettings settings{.until = 1.3, .every = 0.5, .history_every = 0.17};
+         settings.damping = 0.7;
+          const auto traction = [](const Point&, double t) { return 0.001 + 0.1 * t; };
+         settings.external = {std::make_shared<DistributedForce>(
+             DistributedForce::Density{traction}, edge_shares(body, 1, body.spacing), body.size())};
          return march(*p.model, *p.constraints, settings, observer, from);
        }},
   };
