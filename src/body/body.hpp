@@ -91,6 +91,8 @@ struct Body {
   [[nodiscard]] std::span<const InterfaceBond> interface_of(std::size_t point) const;
   /// Bonds of a point, those to inclusions included.
   [[nodiscard]] std::size_t family_size(std::size_t point) const;
+  /// Share of a body point's bonds that cracks have cut.
+  [[nodiscard]] double damage(std::size_t point) const;
   /// Reference area (m^2) of an outer face.
   [[nodiscard]] double face_area(std::size_t face) const;
   /// Memory of bonds, kinds and volumes (bytes).

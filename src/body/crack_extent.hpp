@@ -1,0 +1,25 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "body/body.hpp"
+
+namespace riven {
+
+/// How far cracks have grown since a state of the body at which its points had lost the shares `before` of
+/// their bonds (docs/theory/cracks.md).
+
+/// Share of the bonds that each of the body's points has lost, in their order.
+std::vector<double> damages(const Body& body);
+
+/// Share of its family that a point loses to a long flat crack `distance` horizons away, 0 to 1: that of a
+/// disc (2D) or ball (3D) beyond a line or plane.
+double share_beyond(int dimension, double distance);
+
+/// Area (m^2) of the cracks beside the points `among`, numbers in the body's list: the damage since `before`
+/// summed over their volume, divided by what a flat crack along the lattice has of that per area.
+double crack_area(const Body& body, std::span<const std::size_t> among, std::span<const double> before,
+                  std::span<const double> now);
+
+}  // namespace riven
