@@ -1,29 +1,12 @@
 #include "body/crack_extent.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "base/parallel.hpp"
 
 namespace riven {
-
-namespace {
-
-/// Damage of a long flat crack summed over a line across it (m): 1 would be a layer of points without bonds.
-double depth_of_crack(const Body& body) {
-  if (const LatticeBonds* on = body.on_lattice()) {
-    // A bond that spans n rows crosses a crack from n places per spacing, and is lost to both of its ends.
-    const auto axis = static_cast<std::size_t>(body.dimension - 1);
-    double rows = 0;
-    for (const Cell& offset : on->stencil.offset) rows += std::abs(offset[axis]);
-    return rows / static_cast<double>(on->stencil.size()) * body.spacing;
-  }
-  // Twice the integral of `share_beyond` over the distances.
-  constexpr std::array<double, 3> depth{0.5, 4 / (3 * std::numbers::pi), 3.0 / 8};
-  return depth[static_cast<std::size_t>(body.dimension - 1)] * body.horizon;
-}
-
-}  // namespace
 
 std::vector<double> damages(const Body& body) {
   std::vector<double> damage(body.points.size());
@@ -41,12 +24,37 @@ double share_beyond(int dimension, double distance) {
   return 0.25 * (2 + x) * (1 - x) * (1 - x);
 }
 
-double crack_area(const Body& body, std::span<const std::size_t> among, std::span<const double> before,
-                  std::span<const double> now) {
+double crack_depth(const Body& body) {
+  // A bond along xi crosses a plane from places |xi_n| deep along its normal n, and is a share 1 / N of its
+  // family: the depth is the mean |xi_n| of a family, here over all axes.
+  const auto axes = static_cast<std::size_t>(body.dimension);
+  double reach = 0, bonds = 0;
+  const auto add = [&](const Point& bond) {
+    for (std::size_t a = 0; a < axes; ++a) reach += std::abs(bond[a]) / static_cast<double>(axes);
+    ++bonds;
+  };
+  if (const LatticeBonds* on = body.on_lattice()) {
+    for (const Point& bond : on->stencil.bond) add(bond);
+    return reach / bonds;
+  }
+  const auto& list = std::get<ListedBonds>(body.bonds);
+  const bool any = std::find(body.complete.begin(), body.complete.end(), true) != body.complete.end();
+  for (const std::size_t i : body.points) {
+    if (any && !body.complete[i]) continue;
+    for (std::size_t b = list.begin[i]; b < list.begin[i + 1]; ++b) {
+      const Point &x = list.position[i], &y = list.position[list.neighbour[b]];
+      add({y[0] - x[0], y[1] - x[1], y[2] - x[2]});
+    }
+  }
+  return reach / bonds;
+}
+
+double crack_area(const Body& body, double depth, std::span<const std::size_t> among,
+                  std::span<const double> before, std::span<const double> now) {
   const double volume = ordered_sum_of(among.size(), [&](std::size_t n) {
     return (now[among[n]] - before[among[n]]) * body.volume[body.points[among[n]]];
   });
-  return volume / depth_of_crack(body);
+  return volume / depth;
 }
 
 }  // namespace riven

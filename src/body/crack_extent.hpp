@@ -17,9 +17,13 @@ std::vector<double> damages(const Body& body);
 /// disc (2D) or ball (3D) beyond a line or plane.
 double share_beyond(int dimension, double distance);
 
+/// Damage of a long flat crack along an axis, summed over a line across it (m): 1 times this would be a layer
+/// of points without bonds. Bonds count whether they are broken or not.
+double crack_depth(const Body& body);
+
 /// Area (m^2) of the cracks beside the points `among`, numbers in the body's list: the damage since `before`
-/// summed over their volume, divided by what a flat crack along the lattice has of that per area.
-double crack_area(const Body& body, std::span<const std::size_t> among, std::span<const double> before,
-                  std::span<const double> now);
+/// summed over their volume, divided by the depth of a flat crack.
+double crack_area(const Body& body, double depth, std::span<const std::size_t> among,
+                  std::span<const double> before, std::span<const double> now);
 
 }  // namespace riven

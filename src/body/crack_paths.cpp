@@ -145,20 +145,21 @@ int CrackPaths::ends(double least) const {
   return count;
 }
 
-std::optional<double> CrackPaths::angle(double over) const {
+std::optional<double> CrackPaths::angle(double from, double to) const {
   if (!top_) return std::nullopt;
   // Points on both sides of the path, so that the line lies in the crack.
   std::vector<bool> beside(distance_.size(), false);
+  const auto within = [&](std::uint32_t n) { return distance_[n] >= from && distance_[n] <= to; };
   std::uint32_t first = *top_;
-  for (; before_[first] != first; first = before_[first])
-    if (distance_[first] <= over) {
-      beside[first] = true;
-      for (const std::uint32_t n : neighbours_[first]) beside[n] = distance_[n] > 0 && distance_[n] <= over;
-    }
+  for (; before_[first] != first; first = before_[first]) {
+    if (!within(first)) continue;
+    beside[first] = true;
+    for (const std::uint32_t n : neighbours_[first]) beside[n] = within(n);
+  }
   std::vector<Point> fitted;
   for (std::uint32_t n = 0; n < beside.size(); ++n)
     if (beside[n]) fitted.push_back(points_.position[n]);
-  if (fitted.size() < 3) return std::nullopt;
+  if (fitted.size() < 6) return std::nullopt;
   Point mean{};
   for (const Point& p : fitted)
     for (std::size_t a = 0; a < 2; ++a) mean[a] += p[a] / static_cast<double>(fitted.size());

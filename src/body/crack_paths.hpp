@@ -35,9 +35,9 @@ class CrackPaths {
   [[nodiscard]] std::optional<Point> tip() const;
   /// Ends of paths that are at least so long (m), counted from where they leave a longer path.
   [[nodiscard]] int ends(double least) const;
-  /// Angle (rad) from the x axis at which the longest path leaves its beginning: of the line that fits best
-  /// the points beside it up to a distance of `over` (m); nothing as long as they are fewer than three.
-  [[nodiscard]] std::optional<double> angle(double over) const;
+  /// Angle (rad) from the x axis at which the longest path goes between two distances from its beginning (m):
+  /// of the line that fits best the points on both sides of it; nothing as long as they are fewer than six.
+  [[nodiscard]] std::optional<double> angle(double from, double to) const;
 
  private:
   void find_neighbours();

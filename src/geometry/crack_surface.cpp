@@ -82,8 +82,8 @@ const std::vector<Point>& checked(const std::vector<Point>& corner) {
       corner.begin(), corner.end(), [&](const Point& a, const Point& b) { return height(a) < height(b); });
   if (height(*high) - height(*low) > kFlat * size)
     throw InputError(
-        fmt::format("the corners do not lie in one plane: {} is {:.3g} m off the plane of {}; expected less "
-                    "than {:.3g} m, a millionth of the polygon's extent",
+        fmt::format("the corners do not lie in one plane: across the plane that fits them, {} is {:.3g} m "
+                    "away from {}; expected less than {:.3g} m, a millionth of the polygon's extent",
                     text(*high), height(*high) - height(*low), text(*low), kFlat * size));
   const std::array<Point, 2> axis = axes_across(normal);
   const auto flat = [&](std::size_t n) {

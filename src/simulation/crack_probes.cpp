@@ -16,6 +16,8 @@ namespace riven {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+// A straight crack lies half a spacing from the nearest points and up to 1.1 from the next ones (45 degrees).
+constexpr double kBeside = 0.75;
 constexpr double kBranch = 2;     // horizons: an end that is shorter is a ragged edge
 constexpr double kWindow = 0.05;  // of the run
 
@@ -33,7 +35,9 @@ CrackProbes::CrackProbes(const Simulation& simulation) : simulation_(simulation)
     check(probes[n]);
     memory_[n] = {};
   }
-  if (!memory_.empty()) before_ = damages(*simulation.body);
+  if (memory_.empty()) return;
+  before_ = damages(*simulation.body);
+  depth_ = crack_depth(*simulation.body);
 }
 
 bool CrackProbes::is_one(const ProbeInput& probe) {
@@ -63,6 +67,11 @@ void CrackProbes::check(const ProbeInput& probe) const {
         fmt::format("\"{}\" is an edge, and edges have no points; expected a set, or nothing for the whole "
                     "body",
                     probe.on.text));
+  if (probe.kind == "crack-angle" && probe.length && *probe.length < 2 * simulation_.body->horizon)
+    fail(fmt::format(
+        "the direction of a crack shows beyond a horizon of {:.4g} m from its beginning; expected "
+        "length = \"2 horizon\" or more",
+        simulation_.body->horizon));
   if (probe.kind != "crack-speed") return;
   const OutputInput& output = simulation_.input.output;
   const double until = simulation_.input.solver.until;
@@ -76,7 +85,8 @@ void CrackProbes::check(const ProbeInput& probe) const {
 
 CrackProbes::View CrackProbes::view(const ProbeInput& probe) const {
   const Body& body = *simulation_.body;
-  return {probe.on.text, probe.damage.value_or(share_beyond(body.dimension, body.spacing / body.horizon))};
+  return {probe.on.text,
+          probe.damage.value_or(share_beyond(body.dimension, kBeside * body.spacing / body.horizon))};
 }
 
 /// Numbers of the points of a set, or of all.
@@ -136,7 +146,7 @@ double CrackProbes::speed(const Memory& memory) const {
 std::vector<double> CrackProbes::values(std::size_t number) const {
   const ProbeInput& probe = simulation_.input.probes[number];
   const Body& body = *simulation_.body;
-  if (probe.kind == "crack-area") return {crack_area(body, points(probe.on.text), before_, now_)};
+  if (probe.kind == "crack-area") return {crack_area(body, depth_, points(probe.on.text), before_, now_)};
   if (probe.kind == "fragments")
     return {static_cast<double>(find_fragments(body).count(static_cast<std::size_t>(probe.least)))};
   const Memory& memory = memory_.at(number);
@@ -146,7 +156,9 @@ std::vector<double> CrackProbes::values(std::size_t number) const {
   if (probe.kind == "branches")
     return {static_cast<double>(now.ends(probe.length.value_or(kBranch * body.horizon)))};
   if (probe.kind == "crack-angle") {
-    const auto angle = now.angle(probe.length.value_or(std::numeric_limits<double>::infinity()));
+    // Nearer to its beginning than a horizon, an old crack takes part in the damage.
+    const double to = probe.length.value_or(std::numeric_limits<double>::infinity());
+    const auto angle = now.angle(body.horizon, to);
     return {angle ? *angle * 180 / std::numbers::pi : kNothing};
   }
   const Point tip = now.tip().value_or(Point{kNothing, kNothing, 0});

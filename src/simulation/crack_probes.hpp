@@ -53,6 +53,7 @@ class CrackProbes {
   [[nodiscard]] double speed(const Memory& memory) const;
 
   const Simulation& simulation_;
+  double depth_ = 0;                      // of a flat crack (m)
   std::vector<double> before_, now_;      // share of lost bonds of each of the body's points
   std::map<View, CrackPaths> paths_;      // now
   std::map<std::size_t, Memory> memory_;  // by probe

@@ -32,10 +32,12 @@ struct CrackedSheet {
     return numbers;
   }
   [[nodiscard]] CrackPaths paths() const {
-    const double threshold = share_beyond(2, after.spacing / after.horizon);
+    const double threshold = share_beyond(2, 0.75 * after.spacing / after.horizon);
     return {crack_points(before, all(), damages(before), damages(after), threshold), after.spacing};
   }
-  [[nodiscard]] double area() const { return crack_area(after, all(), damages(before), damages(after)); }
+  [[nodiscard]] double area() const {
+    return crack_area(after, crack_depth(after), all(), damages(before), damages(after));
+  }
 };
 
 /// A point `along` a direction from another one.

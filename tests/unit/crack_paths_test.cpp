@@ -34,7 +34,7 @@ TEST(CrackDamage, DefaultThresholdTakesTheRowsBesideTheCrack) {
       const Segment crack = diagonal ? Segment{{-3, -3.05, 0}, {3, 2.95, 0}} : Segment{{-3, 0, 0}, {3, 0, 0}};
       const CrackedSheet sheet(plate(40, 40, horizon), {}, {crack});
       const std::vector<double> damage = damages(sheet.after);
-      const double threshold = share_beyond(2, 1 / horizon);
+      const double threshold = share_beyond(2, 0.75 / horizon);
       for (std::size_t n = 0; n < damage.size(); ++n) {
         const Point x = sheet.after.position(sheet.after.points[n]);
         if (std::abs(x[0]) > 1 || std::abs(x[1]) > 1) continue;
@@ -81,7 +81,9 @@ TEST(CrackLength, IsThatOfAStraightCrack) {
     EXPECT_NEAR((*paths.tip())[1], 0, 1e-9);
     EXPECT_LT((*paths.tip())[0], tip + grown + 1e-9);
     EXPECT_GT((*paths.tip())[0], tip + grown - 2 * kSpacing - 0.5 * horizon * kSpacing);
-    if (grown > 5 * kSpacing && paths.angle(10)) EXPECT_NEAR(*paths.angle(10), 0, 1e-9);
+    if (grown < 1) continue;
+    ASSERT_TRUE(paths.angle(0.4, 10));
+    EXPECT_NEAR(*paths.angle(0.4, 10), 0, 1e-9);
   }
 }
 
@@ -97,8 +99,9 @@ TEST(CrackLength, IsThatOfASlantedCrack) {
     EXPECT_NEAR(paths.length(), grown, 0.028 * grown + 1.5 * kSpacing) << degrees(angle);
     EXPECT_NEAR(sheet.area() / sheet.after.thickness, grown, 0.06 * grown + kSpacing) << degrees(angle);
     EXPECT_EQ(paths.ends(6 * kSpacing), 1);
-    ASSERT_TRUE(paths.angle(2));
-    EXPECT_NEAR(degrees(*paths.angle(2)), degrees(angle), 4) << grown;
+    ASSERT_TRUE(paths.angle(0.3, 2));
+    // The direction is as uncertain as one spacing over what is left behind the first horizon and the tip.
+    EXPECT_NEAR(*paths.angle(0.3, 2), angle, kSpacing / (grown - 0.4)) << grown;
   }
 }
 
@@ -108,7 +111,7 @@ TEST(CrackLength, IsNothingWithoutGrowth) {
   EXPECT_EQ(sheet.area(), 0);
   EXPECT_EQ(sheet.paths().ends(0), 0);
   EXPECT_FALSE(sheet.paths().tip());
-  EXPECT_FALSE(sheet.paths().angle(1));
+  EXPECT_FALSE(sheet.paths().angle(0, 1));
 }
 
 // More broken bonds never make a crack shorter, as long as it grows along one line.
@@ -133,7 +136,8 @@ TEST(CrackLength, OfACrackFromAnEdgeBeginsThere) {
     const CrackPaths paths = sheet.paths();
     EXPECT_NEAR(paths.length(), 1.5, 1.5 * kSpacing);
     EXPECT_LT(std::abs((*paths.tip())[0] - side * 1), 2 * kSpacing);
-    EXPECT_NEAR(std::abs(degrees(*paths.angle(1))), from_right ? 180 : 0, 1e-6);
+    // It begins in one of the two rows beside it, so that the other row has other distances.
+    EXPECT_NEAR(std::abs(degrees(*paths.angle(0.3, 2))), from_right ? 180 : 0, 2);
     EXPECT_EQ(paths.ends(6 * kSpacing), 1);
   }
 }
@@ -144,7 +148,7 @@ TEST(CrackBranches, AreTheEndsOfAFork) {
   for (int trial = 0; trial < 60; ++trial) {
     const Point tip{-1.5, random.between(-0.05, 0.05), 0}, fork = from(tip, 0, random.between(0.3, 1));
     const double up = random.between(0.35, 0.9), down = -random.between(0.35, 0.9);
-    const double long_one = random.between(1.6, 2), short_one = random.between(1.3, 1.6);
+    const double long_one = random.between(1.75, 2), short_one = random.between(1.3, 1.6);
     std::vector<Segment> grown{
         {tip, fork}, {fork, from(fork, up, long_one)}, {fork, from(fork, down, short_one)}};
     const int teeth = random.integer(0, 4);
@@ -157,9 +161,11 @@ TEST(CrackBranches, AreTheEndsOfAFork) {
     EXPECT_EQ(paths.ends(6 * kSpacing), 2)
         << "trial " << trial << ": " << degrees(up) << ", " << degrees(down);
     EXPECT_NEAR(paths.length(), fork[0] - tip[0] + long_one, 0.3);
-    // Broken bonds count all branches. They share bonds where the fork is narrow.
-    EXPECT_NEAR(sheet.area() / sheet.after.thickness, fork[0] - tip[0] + long_one + short_one + 0.25 * teeth,
-                0.5);
+    // Broken bonds count all branches, but those that cross two cracks less than a horizon apart once: half
+    // of them up to 0.3 / (2 sin 20 deg) from the fork, and most of the teeth's.
+    const double all = fork[0] - tip[0] + long_one + short_one;
+    EXPECT_GT(sheet.area() / sheet.after.thickness, all - 0.44);
+    EXPECT_LT(sheet.area() / sheet.after.thickness, 1.06 * (all + 0.25 * teeth));
     const double tip_error = std::hypot((*paths.tip())[0] - from(fork, up, long_one)[0],
                                         (*paths.tip())[1] - from(fork, up, long_one)[1]);
     EXPECT_LT(tip_error, 0.3);
@@ -173,7 +179,7 @@ TEST(CrackBranches, CountBothEndsOfAnOldCrack) {
   EXPECT_EQ(sheet.paths().ends(1.3), 1);
   EXPECT_EQ(sheet.paths().ends(2), 0);
   EXPECT_NEAR(sheet.paths().length(), 1.5, kSpacing);
-  EXPECT_NEAR(std::abs(degrees(*sheet.paths().angle(1))), 180, 1e-6);
+  EXPECT_NEAR(std::abs(degrees(*sheet.paths().angle(0.3, 1))), 180, 1e-6);
 }
 
 // A kink: the angle of the first part is that of the part.
@@ -181,8 +187,8 @@ TEST(CrackAngle, IsThatOfThePartNearTheBeginning) {
   const Point tip{-1, 0.02, 0}, kink = from(tip, 1.18, 1.2);
   const CrackedSheet sheet(plate(60, 60), {{{-3, 0.02, 0}, tip}},
                            {{tip, kink}, {kink, from(kink, 0.2, 1.5)}});
-  EXPECT_NEAR(degrees(*sheet.paths().angle(1.1)), degrees(1.18), 4);
-  EXPECT_LT(degrees(*sheet.paths().angle(10)), 55);
+  EXPECT_NEAR(degrees(*sheet.paths().angle(0.3, 1.1)), degrees(1.18), 4);
+  EXPECT_LT(degrees(*sheet.paths().angle(0.3, 10)), 55);
 }
 
 // In three dimensions, areas: of a flat crack along the lattice, and of a penny where its rim is a small
@@ -195,10 +201,12 @@ TEST(CrackArea, IsThatOfASquareInABlock) {
   const Body after = make_lattice_body(in);
   std::vector<std::size_t> all(after.points.size());
   std::iota(all.begin(), all.end(), 0U);
-  EXPECT_NEAR(crack_area(after, all, damages(before), damages(after)), 1.1 * 1.6, 0.1 * 1.6);
+  EXPECT_NEAR(crack_area(after, crack_depth(after), all, damages(before), damages(after)), 1.1 * 1.6,
+              0.1 * 1.6);
   const std::size_t upper = all.size() / 2;
   const std::vector<std::size_t> half(all.begin() + static_cast<std::ptrdiff_t>(upper), all.end());
-  EXPECT_NEAR(crack_area(after, half, damages(before), damages(after)), 0.5 * 1.1 * 1.6, 0.05 * 1.6);
+  EXPECT_NEAR(crack_area(after, crack_depth(after), half, damages(before), damages(after)), 0.5 * 1.1 * 1.6,
+              0.05 * 1.6);
 }
 
 // ---- fragments ----

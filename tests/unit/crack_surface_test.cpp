@@ -172,7 +172,7 @@ TEST(PolygonCrack, IsRefusedWhereItIsNoFlatPolygon) {
     }
     return std::string("accepted");
   };
-  EXPECT_NE(message({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.01}, {0, 1, 0}}).find("0.01 m off the plane"),
+  EXPECT_NE(message({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.01}, {0, 1, 0}}).find("is 0.005 m away from"),
             std::string::npos)
       << message({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.01}, {0, 1, 0}});
   EXPECT_EQ(message({{0, 0, 0}, {1, 0, 0}, {1, 1, 1e-8}, {0, 1, 0}}), "accepted");
@@ -287,7 +287,9 @@ TEST(BoxTree, FindsWhatLookingAtAllFinds) {
     }));
     const Point p = random_place(random, 2);
     double nearest = std::numeric_limits<double>::infinity();
-    const auto middle = [&](std::uint32_t n) { return (vector(boxes[n].low) + vector(boxes[n].high)) / 2; };
+    const auto middle = [&](std::uint32_t n) -> Vector3d {
+      return (vector(boxes[n].low) + vector(boxes[n].high)) / 2;
+    };
     for (std::uint32_t n = 0; n < boxes.size(); ++n) {
       bool meet = true;
       for (std::size_t k = 0; k < 3; ++k)
