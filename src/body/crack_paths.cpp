@@ -43,13 +43,16 @@ CrackPaths::CrackPaths(CrackPoints points, double spacing)
       neighbours_(points_.position.size()),
       distance_(points_.position.size(), kFar),
       before_(points_.position.size()) {
+  std::iota(before_.begin(), before_.end(), 0U);
   find_neighbours();
   std::vector<std::uint32_t> old;
   for (std::uint32_t n = 0; n < points_.old.size(); ++n)
     if (points_.old[n]) old.push_back(n);
   static_cast<void>(spread(old));
-  for (std::uint32_t n = 0; n < distance_.size(); ++n)
-    if (distance_[n] == kFar) start_new_crack(n);
+  for (std::uint32_t n = 0; n < distance_.size(); ++n) {
+    if (distance_[n] == kFar && old.empty()) start_new_crack(n);
+    if (distance_[n] == kFar) distance_[n] = 0;
+  }
   for (std::uint32_t n = 0; n < distance_.size(); ++n)
     if (distance_[n] > length_) {
       length_ = distance_[n];

@@ -22,8 +22,9 @@ CrackPoints crack_points(const Body& body, std::span<const std::size_t> among, s
                          std::span<const double> now, double threshold);
 
 /// Cracks as paths: how far it is to each of their points, along the cracks, from where they began
-/// (docs/theory/cracks.md). Old cracks are where new ones begin; a crack that touches no old one begins at
-/// the end of its longest path that is at an edge, else at the one stored first.
+/// (docs/theory/cracks.md). New cracks begin at old ones, and what is not connected to any is left out.
+/// Without old ones a crack begins at the end of its longest path that is at an edge, else at the one stored
+/// first.
 class CrackPaths {
  public:
   /// `spacing` of the body (m).
@@ -47,7 +48,7 @@ class CrackPaths {
   CrackPoints points_;
   double spacing_;
   std::vector<std::vector<std::uint32_t>> neighbours_;
-  std::vector<double> distance_;       // from the beginning (m)
+  std::vector<double> distance_;       // from the beginning (m); 0 of what is left out
   std::vector<std::uint32_t> before_;  // point before this one on its path; itself at the beginning
   std::optional<std::uint32_t> top_;   // the farthest point
   double length_ = 0;

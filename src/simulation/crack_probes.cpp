@@ -134,10 +134,10 @@ double CrackProbes::speed(const Memory& memory) const {
   const auto count = static_cast<double>(memory.time.size());
   if (count < 2) return 0;
   const double time = std::accumulate(memory.time.begin(), memory.time.end(), 0.0) / count;
-  const double length = std::accumulate(memory.length.begin(), memory.length.end(), 0.0) / count;
   double above = 0, below = 0;
   for (std::size_t n = 0; n < memory.time.size(); ++n) {
-    above += (memory.time[n] - time) * (memory.length[n] - length);
+    // Any length may be subtracted; this one makes the speed of a crack at rest exactly 0.
+    above += (memory.time[n] - time) * (memory.length[n] - memory.length.front());
     below += (memory.time[n] - time) * (memory.time[n] - time);
   }
   return above / below;

@@ -128,6 +128,19 @@ TEST(CrackLength, GrowsWithTheCrack) {
   EXPECT_GT(length, 1.8);
 }
 
+// Beside an old crack, cracks that are not connected to it do not count, until it reaches them.
+TEST(CrackLength, LeavesOutWhatTheOldCrackHasNotReached) {
+  const Segment old{{-3, 0, 0}, {-1, 0, 0}}, grown{{-1, 0, 0}, {0, 0, 0}}, link{{0, 0, 0}, {0.6, 0, 0}},
+      apart{{0.6, 0, 0}, {2.8, 0, 0}};
+  const CrackedSheet two(plate(60, 24), {old}, {grown, apart});
+  EXPECT_NEAR(two.paths().length(), 1, kSpacing);
+  EXPECT_EQ(two.paths().ends(0.6), 1);
+  EXPECT_NEAR((*two.paths().tip())[0], 0, 2.5 * kSpacing);
+  EXPECT_NEAR(two.area() / two.after.thickness, 3.2, 2 * kSpacing);
+  const CrackedSheet one(plate(60, 24), {old}, {grown, link, apart});
+  EXPECT_NEAR(one.paths().length(), 3.8, 1.5 * kSpacing);
+}
+
 // Without an old crack: what starts at an edge begins there, and ends inside.
 TEST(CrackLength, OfACrackFromAnEdgeBeginsThere) {
   for (const bool from_right : {false, true}) {
