@@ -155,6 +155,16 @@ TEST(CrackLength, OfACrackFromAnEdgeBeginsThere) {
   }
 }
 
+// A crack inside that is stored from its middle on is as long as both of its arms.
+TEST(CrackLength, OfACrackInsideGoesFromEndToEnd) {
+  const Point apex{0.02, -1.01, 0};
+  const CrackedSheet sheet(plate(60, 60), {}, {{apex, from(apex, 0.8, 1.6)}, {apex, from(apex, 2.3, 1.2)}});
+  // Without an old crack both tips lag behind, each by up to half a horizon, and the path cuts the corner.
+  EXPECT_GT(sheet.paths().length(), 2.8 - 0.3 - kSpacing);
+  EXPECT_LT(sheet.paths().length(), 2.8);
+  EXPECT_EQ(sheet.paths().ends(0.6), 1);
+}
+
 // Forks of different angles and lengths; ragged edges, which are shorter than the least length, do not count.
 TEST(CrackBranches, AreTheEndsOfAFork) {
   Random random(9);
@@ -233,6 +243,24 @@ TEST(Fragments, OfAnIntactBodyAreOne) {
       EXPECT_EQ(fragments.count(4), 1);
       EXPECT_EQ(fragments.number, std::vector<std::uint32_t>(one.points.size(), 1));
     }
+  }
+}
+
+TEST(Fragments, OfOneSizeAreNumberedByTheirFirstPoint) {
+  LatticeBodyInput in = sheet(12, 10, kSpacing);
+  for (int n = -4; n <= 4; ++n) {
+    in.defects.cracks.push_back({{n * 2 * kSpacing, -1, 0}, {n * 2 * kSpacing, 1, 0}});
+    in.defects.cracks.push_back({{-1, (n * 2 + 1) * kSpacing, 0}, {1, (n * 2 + 1) * kSpacing, 0}});
+  }
+  const Body body = make_lattice_body(in);
+  const Fragments fragments = find_fragments(body);
+  EXPECT_EQ(fragments.points, std::vector<std::size_t>(30, 4));
+  EXPECT_EQ(fragments.count(4), 30);
+  EXPECT_EQ(fragments.count(5), 0);
+  std::uint32_t seen = 0;
+  for (const std::uint32_t number : fragments.number) {
+    EXPECT_LE(number, seen + 1);
+    seen = std::max(seen, number);
   }
 }
 
