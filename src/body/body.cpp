@@ -50,6 +50,11 @@ void Body::cut(std::size_t point, std::size_t bond) {
   list.cut(end, static_cast<std::size_t>(std::lower_bound(first, last, point) - list.neighbour.begin()));
 }
 
+double Body::damage(std::size_t point) const {
+  const double whole = whole_family[point];  // 0 for a point that holes have cut off from all others
+  return whole > 0 ? 1 - static_cast<double>(family_size(point)) / whole : 0;
+}
+
 double Body::face_area(std::size_t face) const {
   double area = thickness;
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(dimension); ++axis)

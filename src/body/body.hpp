@@ -120,6 +120,8 @@ struct Body {
             std::uint8_t value) const;
   /// Cuts a bond (offset of the stencil, or place in the list) of a stored point, seen from both ends.
   void cut(std::size_t point, std::size_t bond);
+  /// Share of a body point's bonds that cracks have cut.
+  [[nodiscard]] double damage(std::size_t point) const;
   /// Reference area (m^2) of an outer face.
   [[nodiscard]] double face_area(std::size_t face) const;
   /// Memory of bonds, kinds and volumes (bytes).

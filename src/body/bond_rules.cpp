@@ -12,8 +12,8 @@ constexpr double kRigidMargin = 0.15;
 
 BondRules::BondRules(const Body& body)
     : body_(body),
-      holes_{body.defects.holes, {}, {}},
-      cracks_{{}, body.defects.cracks, {}},
+      holes_{body.defects.holes, {}, {}, {}},
+      cracks_{{}, body.defects.cracks, {}, body.defects.crack_surfaces},
       touch_(kTouch * body.spacing) {}
 
 bool BondRules::cut(const Defects& defects, const Point& x, const Point& y, const Faces& mirrored) const {

@@ -16,13 +16,16 @@ bool Defects::cuts(const Point& a, const Point& b, double tolerance) const {
   };
   const auto across = [&](const Segment& crack) { return crosses(crack, a, b, tolerance); };
   return std::any_of(holes.begin(), holes.end(), through) ||
-         std::any_of(cracks.begin(), cracks.end(), across);
+         std::any_of(cracks.begin(), cracks.end(), across) ||
+         std::any_of(crack_surfaces.begin(), crack_surfaces.end(),
+                     [&](const auto& crack) { return crack->crosses(a, b, tolerance); });
 }
 
 double Defects::distance_to_edge(const Point& p) const {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Shape& hole : holes) nearest = std::min(nearest, std::abs(signed_distance(hole, p)));
   for (const Segment& crack : cracks) nearest = std::min(nearest, distance(crack, p));
+  for (const auto& crack : crack_surfaces) nearest = std::min(nearest, crack->distance(p));
   for (const Shape& body : inclusions) nearest = std::min(nearest, std::abs(signed_distance(body, p)));
   return nearest;
 }

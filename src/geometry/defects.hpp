@@ -1,7 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "geometry/crack_surface.hpp"
 #include "geometry/shape.hpp"
 
 namespace riven {
@@ -9,8 +11,9 @@ namespace riven {
 /// What interrupts a body: holes and slots (shapes without material), cracks of zero width, rigid inclusions.
 struct Defects {
   std::vector<Shape> holes;
-  std::vector<Segment> cracks;
+  std::vector<Segment> cracks;  // in two dimensions
   std::vector<Shape> inclusions;
+  std::vector<std::shared_ptr<const CrackSurface>> crack_surfaces;  // in three dimensions
 
   /// Whether the straight line from `a` to `b` is interrupted by a hole or a crack: its open segment enters a
   /// hole's interior, not counting a part that starts at an end point inside (a kept point of a cut cell).

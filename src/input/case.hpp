@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "geometry/crack_surface.hpp"
 #include "geometry/shape.hpp"
 #include "input/expression.hpp"
 #include "input/point_list.hpp"
@@ -71,8 +72,19 @@ struct HoleInput {  // [[hole]]
   Location at;
 };
 
-struct CrackInput {  // [[crack]]
-  Segment segment;
+struct CrackFileInput {  // [[crack]] surface = {...}
+  std::string file;      // STL, relative to the case file
+  std::string unit;      // of its coordinates
+};
+
+struct CrackInput {               // [[crack]]: exactly one of these forms
+  std::optional<Point> from, to;  // in two dimensions: ends of a straight crack (m)
+  std::vector<Point> path;        // or corners of a polyline
+  std::vector<Point> polygon;     // in three dimensions: corners of a flat crack (m)
+  std::optional<PennyCrack> penny;
+  std::optional<CrackFileInput> file;
+  std::vector<Segment> segments;                // what these are in two dimensions
+  std::shared_ptr<const CrackSurface> surface;  // what they are in three
   Location at;
 };
 
@@ -197,12 +209,16 @@ struct OutputInput {                    // [output]
 
 struct ProbeInput {  // [[probe]]
   std::string name;
-  std::string kind;  // "reaction", "nominal-stress", "displacement", "stretch"
+  std::string kind;  // "reaction", "nominal-stress", "displacement", "stretch", or one of cracks
   std::string
       component;  // reaction, displacement: only this one of "x", "y", "z", under the probe's own name
-  Named on;       // reaction, nominal-stress: an edge or a set
+  Named on;       // reaction, nominal-stress: an edge or a set; of cracks: a set, or nothing for all
   std::optional<Point> position;  // displacement: a place in the undeformed body (m)
   std::optional<Point> from, to;  // stretch: deformed over undeformed distance of two places
+  std::optional<double> damage;   // of cracks: share of the bonds that a point of a crack has lost
+  std::optional<double> over;     // crack-speed: s
+  std::optional<double> length;   // crack-angle, branches: m
+  int least = 4;                  // fragments: points
   Location at;
 };
 

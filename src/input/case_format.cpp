@@ -8,6 +8,8 @@
 
 #include "base/nearest_name.hpp"
 #include "input/failure_format.hpp"
+#include "input/crack_format.hpp"
+#include "input/crack_probe_format.hpp"
 #include "input/field_format.hpp"
 #include "input/format.hpp"
 #include "input/model_format.hpp"
@@ -85,18 +87,6 @@ Format describe(HoleInput& hole, const Case& c) {
           .finish = [shape, &hole, &c](const Check& check) {
             hole.shape = shape->value();
             check_shape(hole.shape, c, check);
-          }};
-}
-
-Format describe(CrackInput& crack, const Case& c) {
-  return {.doc = "A straight crack of zero width in two dimensions.",
-          .at = &crack.at,
-          .keys = {Key{"from", Place{&crack.segment.a}, "One end."}.required(),
-                   Key{"to", Place{&crack.segment.b}, "The other end."}.required()},
-          .finish = [&crack, &c](const Check& check) {
-            if (c.geometry.dimension != 2) check.fail("from", "cracks belong to bodies in two dimensions");
-            if (crack.segment.a == crack.segment.b)
-              check.fail("to", "is the same place as from; expected a crack with a length");
           }};
 }
 
@@ -320,64 +310,69 @@ Format describe(SolverInput& s) {
 
 Format describe(OutputInput& output, const Case& c) {
   const auto time = [](std::optional<double>& to) { return Quantity{&to, dimension::time, positive}; };
-  return {.doc = "What is written. Static solvers write at each stretch.",
-          .at = &output.at,
-          .keys = {Key{"every", time(output.every),
-                       "Time between output states; start and end only unless given."}
-                       .applies(method(c, verlet)),
-                   Key{"history_every", time(output.history_every),
-                       "Time between rows of the history; `every` unless given."}
-                       .applies(method(c, verlet)),
-                   Key{"fields",
-                       Texts{&output.fields,
-                             {"displacement", "damage", "strain_energy_density", "nominal_stress",
-                              "weight_minimum", "surface_correction", "deformation_gradient"}},
-                       "Fields of the output states; weight_minimum: membrane, surface_correction: "
-                       "membrane-bond, deformation_gradient: correspondence."}
-                       .otherwise(R"(["displacement", "damage", "strain_energy_density", "nominal_stress"])"),
-                   Key{"checkpoint_every", Interval{&output.checkpoint_every},
-                       "Wall time, or time steps (Verlet) or iterations (statics), between checkpoints, "
-                       "from which `riven run --resume` goes on."}
-                       .otherwise("\"5 min\"")},
-          .finish = [&output, &c](const Check& check) {
-            const double until = c.solver.until;
-            if (output.every)
-              check_count("every", until / *output.every, "output states", kMostStates, check);
-            if (output.history_every)
-              check_count("history_every", until / *output.history_every, "rows of the history", kMostStates,
-                          check);
-          }};
+  return {
+      .doc = "What is written. Static solvers write at each stretch.",
+      .at = &output.at,
+      .keys =
+          {Key{"every", time(output.every), "Time between output states; start and end only unless given."}
+               .applies(method(c, verlet)),
+           Key{"history_every", time(output.history_every),
+               "Time between rows of the history; `every` unless given."}
+               .applies(method(c, verlet)),
+           Key{"fields",
+               Texts{&output.fields,
+                     {"displacement", "damage", "strain_energy_density", "nominal_stress", "weight_minimum",
+                      "surface_correction", "deformation_gradient", "fragment"}},
+               "Fields of the output states; weight_minimum: membrane, surface_correction: "
+               "membrane-bond, deformation_gradient: correspondence. fragment: the number of the part that a "
+               "point belongs to, 1 the largest."}
+               .otherwise(R"(["displacement", "damage", "strain_energy_density", "nominal_stress"])"),
+           Key{"checkpoint_every", Interval{&output.checkpoint_every},
+               "Wall time, or time steps (Verlet) or iterations (statics), between checkpoints, "
+               "from which `riven run --resume` goes on."}
+               .otherwise("\"5 min\"")},
+      .finish = [&output, &c](const Check& check) {
+        const double until = c.solver.until;
+        if (output.every) check_count("every", until / *output.every, "output states", kMostStates, check);
+        if (output.history_every)
+          check_count("history_every", until / *output.history_every, "rows of the history", kMostStates,
+                      check);
+      }};
 }
 
 Format describe(ProbeInput& p, const Case& c) {
   const auto kinds = [&p](std::vector<std::string> among) { return When{"kind", &p.kind, std::move(among)}; };
+  std::vector<std::string> all{"reaction", "nominal-stress", "displacement", "stretch"};
+  all.insert(all.end(), crack_probe_kinds().begin(), crack_probe_kinds().end());
+  std::vector<Key> keys = {
+      Key{"name", Text{&p.name}, "Its name in the history and in metrics."}.required(),
+      Key{"kind", Text{&p.kind, std::move(all)}, "What it measures."}.required(),
+      Key{"on", Part{&p.on},
+          "The edge or set whose external force is summed; the inertia of points that a load "
+          "moves is not in it. Of cracks: the set whose points are looked at, all unless given."}
+          .applies(kinds({"reaction", "nominal-stress", "crack-length", "crack-area", "crack-speed",
+                          "crack-tip", "branches", "crack-angle"}))
+          .required_if(kinds({"reaction", "nominal-stress"})),
+      Key{"component", Text{&p.component, {"x", "y", "z"}},
+          "Only this component; the metric then has the probe's own name. Otherwise all, as "
+          "name_x, name_y."}
+          .applies(kinds({"reaction", "displacement"})),
+      Key{"at", Place{&p.position}, "A place in the undeformed body."}
+          .applies(kinds({"displacement"}))
+          .required(),
+      Key{"from", Place{&p.from}, "One of two places in the undeformed body."}
+          .applies(kinds({"stretch"}))
+          .required(),
+      Key{"to", Place{&p.to}, "The other place; the probe is their distance over the undeformed one."}
+          .applies(kinds({"stretch"}))
+          .required()};
+  for (Key& key : crack_probe_keys(p)) keys.push_back(std::move(key));
   return {.doc = "A number that is followed through the run.",
           .at = &p.at,
-          .keys = {Key{"name", Text{&p.name}, "Its name in the history and in metrics."}.required(),
-                   Key{"kind", Text{&p.kind, {"reaction", "nominal-stress", "displacement", "stretch"}},
-                       "What it measures."}
-                       .required(),
-                   Key{"on", Part{&p.on},
-                       "The edge or set whose external force is summed; the inertia of points that a load "
-                       "moves is not in it."}
-                       .applies(kinds({"reaction", "nominal-stress"}))
-                       .required(),
-                   Key{"component", Text{&p.component, {"x", "y", "z"}},
-                       "Only this component; the metric then has the probe's own name. Otherwise all, as "
-                       "name_x, name_y."}
-                       .applies(kinds({"reaction", "displacement"})),
-                   Key{"at", Place{&p.position}, "A place in the undeformed body."}
-                       .applies(kinds({"displacement"}))
-                       .required(),
-                   Key{"from", Place{&p.from}, "One of two places in the undeformed body."}
-                       .applies(kinds({"stretch"}))
-                       .required(),
-                   Key{"to", Place{&p.to},
-                       "The other place; the probe is their distance over the undeformed one."}
-                       .applies(kinds({"stretch"}))
-                       .required()},
+          .keys = std::move(keys),
           .finish = [&p, &c](const Check& check) {
             check_new_name(c.probes, p, check);
+            check_crack_probe(p, c, check);
             if (p.from && p.from == p.to) check.fail("to", "is the same place as from; expected two places");
           }};
 }
@@ -498,7 +493,7 @@ Format describe(Case& c) {
            Key{"field", named_tables(c.fields, [&c](FieldInput& f) { return describe(f, c); }),
                "Values at places."},
            Key{"hole", tables(c.holes, [&c](HoleInput& h, std::size_t) { return describe(h, c); }), "Holes."},
-           Key{"crack", tables(c.cracks, [&c](CrackInput& k, std::size_t) { return describe(k, c); }),
+           Key{"crack", tables(c.cracks, [&c](CrackInput& k, std::size_t) { return describe_crack(k, c); }),
                "Cracks."},
            Key{"inclusion",
                tables(c.inclusions, [&c](InclusionInput& i, std::size_t) { return describe(i, c); }),

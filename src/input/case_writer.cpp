@@ -64,9 +64,10 @@ class ValueText {
   std::string operator()(const kind::Place& k) const {
     const auto* maybe = std::get_if<std::optional<Point>*>(&k.to);
     if (maybe != nullptr && !**maybe) return "";
-    const Point& place = maybe != nullptr ? ***maybe : *std::get<Point*>(k.to);
-    const std::vector<double> used(place.begin(), place.begin() + dimension_);
-    return list(used, [](double si) { return with_unit(si, "m"); });
+    return place(maybe != nullptr ? ***maybe : *std::get<Point*>(k.to));
+  }
+  std::string operator()(const kind::Places& k) const {
+    return k.to->empty() ? "" : list(*k.to, [&](const Point& p) { return place(p); });
   }
   std::string operator()(const kind::Condition& k) const {
     return *k.to ? toml_string((*k.to)->written()) : "";
@@ -94,6 +95,11 @@ class ValueText {
   std::string operator()(const kind::NamedTables&) const { return ""; }
 
  private:
+  [[nodiscard]] std::string place(const Point& p) const {
+    const std::vector<double> used(p.begin(), p.begin() + dimension_);
+    return list(used, [](double si) { return with_unit(si, "m"); });
+  }
+
   int dimension_;
 };
 

@@ -70,6 +70,11 @@ struct Place {
   std::variant<Point*, std::optional<Point>*> to;
   Range range = any_number;
 };
+/// A list of such places.
+struct Places {
+  std::vector<Point>* to;
+  std::size_t least;
+};
 /// A formula of x, y, z that is true or false.
 struct Condition {
   std::optional<Expression>* to;
@@ -114,8 +119,8 @@ struct NamedTables {
 
 using Kind =
     std::variant<kind::Text, kind::Texts, kind::Integer, kind::Integers, kind::Quantity, kind::Quantities,
-                 kind::AnyUnit, kind::Place, kind::Condition, kind::Components, kind::Interval, kind::Part,
-                 kind::Parts, kind::Table, kind::Tables, kind::NamedTables>;
+                 kind::AnyUnit, kind::Place, kind::Places, kind::Condition, kind::Components, kind::Interval,
+                 kind::Part, kind::Parts, kind::Table, kind::Tables, kind::NamedTables>;
 
 /// A rule that holds while another key, read before, has one of some values.
 struct When {

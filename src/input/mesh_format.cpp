@@ -9,9 +9,7 @@
 #include "input/mesh_points.hpp"
 
 namespace riven {
-namespace {
 
-/// Metres of one unit of a file that has no units.
 double length_unit(const std::string& text, const Check& check) {
   std::optional<UnitMatch> match;
   if (is_unit(text)) match = match_unit(text, 0);
@@ -19,6 +17,8 @@ double length_unit(const std::string& text, const Check& check) {
     check.fail("unit", fmt::format("found \"{}\"; expected a unit of length, such as \"mm\" or \"m\"", text));
   return match->unit.factor;
 }
+
+namespace {
 
 void check_thickness(const std::optional<double>& thickness, int dimension, const Check& check) {
   if (dimension == 2 && !thickness)

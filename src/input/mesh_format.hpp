@@ -4,6 +4,9 @@
 
 namespace riven {
 
+/// Metres of one unit of a file that has no units; what is none is an error at `unit`.
+double length_unit(const std::string& text, const Check& check);
+
 /// The format of `mesh` in [geometry]; reads the file when the keys have been read. `c` tells where the case
 /// is.
 Format describe_mesh(GeometryInput& geometry, const Case& c);

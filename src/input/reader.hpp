@@ -32,6 +32,7 @@ class Reader {
   void read_value(const kind::Quantities& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::AnyUnit& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Place& to, const toml::node& node, const Origin& origin);
+  void read_value(const kind::Places& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Condition& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Components& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Interval& to, const toml::node& node, const Origin& origin);
@@ -43,6 +44,7 @@ class Reader {
 
   [[nodiscard]] double quantity(const toml::node& node, const Dimension& dimension, const Range& range,
                                 const Origin& origin) const;
+  void read_place(Point& to, const Range& range, const toml::node& node, const Origin& origin) const;
   [[nodiscard]] ComponentInput component(const kind::Components& of, const toml::node& node,
                                          const Origin& origin) const;
   [[nodiscard]] Named part(const toml::node& node, const Origin& origin) const;

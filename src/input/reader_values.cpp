@@ -144,20 +144,33 @@ void Reader::read_value(const kind::AnyUnit& to, const toml::node& node, const O
   *to.to = AnyQuantity{value.si, si_unit(value.dimension)};
 }
 
-void Reader::read_value(const kind::Place& to, const toml::node& node, const Origin& origin) {
+void Reader::read_place(Point& to, const Range& range, const toml::node& node, const Origin& origin) const {
   const auto count = static_cast<std::size_t>(case_.geometry.dimension);
   const toml::array& list = list_of(node, origin, fmt::format("a list of {} lengths", count));
   if (list.size() != count)
     origin.fail(fmt::format("found {} entries; expected {}, one per direction", list.size(), count));
+  for (std::size_t i = 0; i < count; ++i)
+    to[i] = quantity(list[i], dimension::length, range, entry_origin(origin, i, list[i]));
+}
+
+void Reader::read_value(const kind::Place& to, const toml::node& node, const Origin& origin) {
   std::visit(
       [&](auto* member) {
         Point place{};
         if constexpr (std::is_same_v<decltype(member), Point*>) place = *member;
-        for (std::size_t i = 0; i < count; ++i)
-          place[i] = quantity(list[i], dimension::length, to.range, entry_origin(origin, i, list[i]));
+        read_place(place, to.range, node, origin);
         *member = place;
       },
       to.to);
+}
+
+void Reader::read_value(const kind::Places& to, const toml::node& node, const Origin& origin) {
+  const toml::array& list = list_of(node, origin, "a list of places, each a list of lengths");
+  if (list.size() < to.least)
+    origin.fail(fmt::format("found {} places; expected {} or more", list.size(), to.least));
+  to.to->assign(list.size(), Point{});
+  for (std::size_t i = 0; i < list.size(); ++i)
+    read_place((*to.to)[i], any_number, list[i], entry_origin(origin, i, list[i]));
 }
 
 void Reader::read_value(const kind::Condition& to, const toml::node& node, const Origin& origin) {

@@ -50,6 +50,9 @@ struct ValueText {
   std::string operator()(const kind::Place& k) const {
     return fmt::format("list, per direction {}", quantity_text(dimension::length, k.range));
   }
+  std::string operator()(const kind::Places& k) const {
+    return fmt::format("list of {} or more places, each a list as `[\"1 mm\", \"2 mm\"]`", k.least);
+  }
   std::string operator()(const kind::Condition&) const { return "formula, true or false"; }
   std::string operator()(const kind::Components&) const {
     return "list, per direction a formula or `\"free\"`";

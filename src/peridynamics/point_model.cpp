@@ -42,10 +42,7 @@ PointModel::PointModel(Body body, std::vector<double> density)
 
 ModelField PointModel::damage() const {
   ModelField damage{"damage", 1, {}, {}};
-  for (const std::size_t i : body_.points) {
-    const double whole = body_.whole_family[i];  // 0 for a point that holes have cut off from all others
-    damage.values.push_back(whole > 0 ? 1 - static_cast<double>(body_.family_size(i)) / whole : 0);
-  }
+  for (const std::size_t i : body_.points) damage.values.push_back(body_.damage(i));
   for (const auto& inclusion : body_.rigid_points)
     damage.values.resize(damage.values.size() + inclusion.size());
   return damage;

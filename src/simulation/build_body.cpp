@@ -40,9 +40,6 @@ void check_places(const Case& in, double touch) {
   for (const HoleInput& hole : in.holes)
     if (!overlap(hole.shape, body, touch))
       throw InputError(hole.at, "hole: lies outside of the body; expected one that cuts it");
-  for (const CrackInput& crack : in.cracks)
-    if (!chord(body, crack.segment.a, crack.segment.b, touch))
-      throw InputError(crack.at, "crack: lies outside of the body; expected one that cuts it");
   for (const InclusionInput& inclusion : in.inclusions)
     for (const Point& point : outline(inclusion.shape))
       if (signed_distance(body, point) > touch)
@@ -67,7 +64,7 @@ Defects make_defects(const Case& in) {
     defects.inclusions.push_back(inclusion.shape);
     placed.push_back({inclusion.shape, inclusion.at});
   }
-  for (const CrackInput& crack : in.cracks) defects.cracks.push_back(crack.segment);
+  for (const CrackInput& crack : in.cracks) add_crack(crack, defects);
   const double touch = 1e-6 * in.geometry.spacing;
   check_places(in, touch);
   for (std::size_t a = 0; a < placed.size(); ++a)
@@ -119,6 +116,19 @@ Body make_points_body(const Case& in) {
   return make_listed_body(listed);
 }
 
+Body make_grid_body(const Case& in) {
+  const GeometryInput& geometry = in.geometry;
+  Body body = make_lattice_body({.dimension = geometry.dimension,
+                                 .shape = geometry.shape,
+                                 .thickness = geometry.thickness,
+                                 .spacing = geometry.spacing,
+                                 .horizon = geometry.horizon,
+                                 .defects = make_defects(in),
+                                 .mirrored = loaded_faces(in),
+                                 .surface = geometry.surface ? geometry.surface->surface.get() : nullptr});
+  return geometry.bonds == "listed" ? listed(body) : body;
+}
+
 /// Points of the mesh's list, as a listed body stores them. The input layer has checked that the group
 /// exists.
 const std::vector<std::size_t>& group_points(const std::string& name, const Case& of) {
@@ -132,16 +142,9 @@ const std::vector<std::size_t>& group_points(const std::string& name, const Case
 Body make_body(const Case& in) {
   const GeometryInput& geometry = in.geometry;
   try {
-    if (geometry.points) return make_points_body(in);
-    Body body = make_lattice_body({.dimension = geometry.dimension,
-                                   .shape = geometry.shape,
-                                   .thickness = geometry.thickness,
-                                   .spacing = geometry.spacing,
-                                   .horizon = geometry.horizon,
-                                   .defects = make_defects(in),
-                                   .mirrored = loaded_faces(in),
-                                   .surface = geometry.surface ? geometry.surface->surface.get() : nullptr});
-    return geometry.bonds == "listed" ? listed(body) : body;
+    Body body = geometry.points ? make_points_body(in) : make_grid_body(in);
+    check_cracks(in, body);
+    return body;
   } catch (const InputError& error) {
     const std::string what = error.what();
     if (what.starts_with(in.file.string())) throw;

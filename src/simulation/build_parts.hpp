@@ -13,6 +13,13 @@ namespace riven {
 /// Points and bonds, with ghost points behind the edges that have a load.
 Body make_body(const Case& in);
 
+/// What a crack of the case adds to the defects.
+void add_crack(const CrackInput& crack, Defects& to);
+
+/// A crack that misses the body is a slip of a sign or a unit. Those in two dimensions are checked in place;
+/// those in three against the points of the finished body: one must be between two of them.
+void check_cracks(const Case& in, const Body& body);
+
 /// The points of a set; an empty one is an error.
 PointSet make_set(const SetInput& in, const Case& of, const Body& body);
 

@@ -87,13 +87,7 @@ void check_metric(const ExpectInput& expect, const std::vector<HistoryColumn>& c
                      fmt::format("expect: the case has no metric \"{}\"; its probes give {}{}", expect.metric,
                                  names.empty() ? "none" : listed(names), did_you_mean(expect.metric, names)));
   }
-  const std::string unit = column->unit.empty() ? "1" : column->unit;
-  for (const auto* quantity : {&expect.value, &expect.absolute_tolerance, &expect.min, &expect.max})
-    if (*quantity && (*quantity)->dimension != unit)
-      throw InputError(expect.at,
-                       fmt::format("expect: \"{}\" is in {}; found a value in {}", expect.metric,
-                                   unit == "1" ? "no unit" : unit,
-                                   (*quantity)->dimension == "1" ? "no unit" : (*quantity)->dimension));
+  static_cast<void>(in_unit_of_metric(expect, column->unit));
 }
 
 void check_step(const Simulation& simulation) {
@@ -129,7 +123,7 @@ void check_solver(const Simulation& simulation) {
 /// Every field asked for must be one that the model has.
 void check_fields(const Simulation& simulation) {
   const std::vector<double> rest(simulation.model->dofs(), 0.0);
-  std::vector<std::string> names = {"displacement"};
+  std::vector<std::string> names = {"displacement", "fragment"};
   for (const ModelField& field : simulation.model->fields(rest)) names.push_back(field.name);
   const OutputInput& output = simulation.input.output;
   for (const std::string& field : output.fields)
@@ -345,6 +339,21 @@ std::string left_out(std::size_t expectations) {
              ? std::string("1 expectation is at a state that this run does not reach; it is left out")
              : fmt::format("{} expectations are at states that this run does not reach; they are left out",
                            expectations);
+}
+
+ExpectInput in_unit_of_metric(ExpectInput expect, const std::string& metric_unit) {
+  const bool angle = metric_unit == "deg";  // a case has angles in radians, as plain numbers
+  const std::string unit = metric_unit.empty() || angle ? "1" : metric_unit;
+  for (auto* quantity : {&expect.value, &expect.absolute_tolerance, &expect.min, &expect.max}) {
+    if (!*quantity) continue;
+    if ((*quantity)->dimension != unit)
+      throw InputError(expect.at,
+                       fmt::format("expect: \"{}\" is in {}; found a value in {}", expect.metric,
+                                   unit == "1" ? "no unit" : unit,
+                                   (*quantity)->dimension == "1" ? "no unit" : (*quantity)->dimension));
+    if (angle) (*quantity)->si *= 180 / std::numbers::pi;
+  }
+  return expect;
 }
 
 void check_before_run(const Simulation& simulation, const Probes& probes) {

@@ -19,6 +19,10 @@ std::size_t drop_unreached_expectations(Case& input);
 /// A line for the user about them.
 std::string left_out(std::size_t expectations);
 
+/// An expectation of a metric with its values in the metric's unit: SI, but for angles, which are in degrees.
+/// Throws InputError for values of another dimension.
+ExpectInput in_unit_of_metric(ExpectInput expect, const std::string& metric_unit);
+
 /// Throws InputError for what would end a run late that can be told before it: a load whose table ends
 /// before the run does, a time step above the stable one, an expectation of a metric, unit, state or file
 /// that the run does not have.

@@ -51,7 +51,7 @@ Point moved(const Point& x, const Point& u) {
 
 }  // namespace
 
-Probes::Probes(const Simulation& simulation) : simulation_(simulation) {
+Probes::Probes(const Simulation& simulation) : simulation_(simulation), cracks_(simulation) {
   for (const ProbeInput& probe : simulation.input.probes) {
     const bool plain = std::all_of(probe.name.begin(), probe.name.end(),
                                    [](char c) { return static_cast<unsigned char>(c) >= ' '; });
@@ -97,16 +97,20 @@ void Probes::add_columns(const ProbeInput& probe) {
       columns_.push_back({probe.name + component, "Pa"});
   if (probe.kind == "displacement") vector("displacement_" + probe.name, "m");
   if (probe.kind == "stretch") columns_.push_back({probe.name, ""});
+  if (CrackProbes::is_one(probe))
+    for (HistoryColumn& column : CrackProbes::columns(probe)) columns_.push_back(std::move(column));
 }
 
-std::vector<double> Probes::evaluate(const State& state, const Constraints& constraints) const {
+std::vector<double> Probes::evaluate(const State& state, const Constraints& constraints) {
   const auto dimension = static_cast<std::size_t>(simulation_.body->dimension);
+  cracks_.look(state.parameter);
   std::optional<DisplacementField> field;
   for (const ProbeInput& probe : simulation_.input.probes)
     if (!field && (probe.kind == "displacement" || probe.kind == "stretch"))
       field.emplace(simulation_, state.u);
   std::vector<double> values;
-  for (const ProbeInput& probe : simulation_.input.probes) {
+  for (std::size_t n = 0; n < simulation_.input.probes.size(); ++n) {
+    const ProbeInput& probe = simulation_.input.probes[n];
     const auto add = [&](const Point& vector, double divisor) {
       for (std::size_t a = 0; a < dimension; ++a)
         if (probe.component.empty() || axis_of(probe) == a) values.push_back(vector[a] / divisor);
@@ -127,6 +131,10 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
       values.push_back(distance_between(moved(*probe.from, field->at(*probe.from, probe)),
                                         moved(*probe.to, field->at(*probe.to, probe))) /
                        distance_between(*probe.from, *probe.to));
+    if (CrackProbes::is_one(probe)) {
+      const std::vector<double> of_cracks = cracks_.values(n);
+      values.insert(values.end(), of_cracks.begin(), of_cracks.end());
+    }
   }
   return values;
 }

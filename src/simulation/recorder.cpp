@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "body/fragments.hpp"
 #include "output/atomic_file.hpp"
 #include "output/vtu.hpp"
 #include "simulation/interrupt.hpp"
@@ -32,14 +33,23 @@ const std::vector<HistoryColumn> kEnergyColumns = {
     {"kinetic", "J"}, {"strain", "J"},        {"dissipated", "J"},  {"damped", "J"},
     {"held", "J"},    {"external_work", "J"}, {"balance_error", ""}};
 
+/// Fragments in the order of the points that are shown: the body's, then those of the inclusions.
+std::vector<double> of_shown_points(const Body& body, const std::vector<std::uint32_t>& fragment) {
+  std::vector<double> values(fragment.begin(),
+                             fragment.begin() + static_cast<std::ptrdiff_t>(body.points.size()));
+  for (std::size_t n = 0; n < body.rigid_points.size(); ++n)
+    values.insert(values.end(), body.rigid_points[n].size(), fragment[body.points.size() + n]);
+  return values;
+}
+
 double seconds_since(Recorder::Clock::time_point start) {
   return std::chrono::duration<double>(Recorder::Clock::now() - start).count();
 }
 
 }  // namespace
 
-Recorder::Recorder(const Simulation& simulation, const Probes& probes, const ResultFolder& folder,
-                   Progress& screen, Log& log, Clock::time_point start, const Checkpoint* from)
+Recorder::Recorder(const Simulation& simulation, Probes& probes, const ResultFolder& folder, Progress& screen,
+                   Log& log, Clock::time_point start, const Checkpoint* from)
     : simulation_(simulation),
       probes_(probes),
       folder_(folder),
@@ -68,6 +78,7 @@ void Recorder::go_on(const Snapshot& from) {
   const auto each = from.restoring();
   each_member(*this, each);
   each("recorder.wall_s", wall_before_s_);
+  probes_.restore(from);
   screen_.add_elapsed(wall_before_s_);
   const std::vector<double> rows = std::exchange(state_values_, {});
   const std::size_t width = 1 + probes_.columns().size();
@@ -107,6 +118,7 @@ void Recorder::write_checkpoint(Snapshot state) {
   each(kHistoryBytes, history_.bytes());
   each(kEnergyBytes, energy_.bytes());
   each("recorder.wall_s", wall_s());
+  probes_.save(state);
   riven::write_checkpoint(folder_.checkpoint(), {.case_values = case_values_, .state = std::move(state)});
   log_.detail(fmt::format("checkpoint at {} {:.6g}", name(simulation_.parameter), last_.parameter));
 }
@@ -183,6 +195,10 @@ void Recorder::write_fields() {
     if (field.name == "deformation_gradient") look_at_rotations(field);
     if (asked(field.name))
       cloud.fields.push_back({field.name, field.components, std::move(field.values), field.unit});
+  }
+  if (asked("fragment")) {
+    const std::vector<std::uint32_t> numbers = find_fragments(*simulation_.body).number;
+    cloud.fields.push_back({"fragment", 1, of_shown_points(*simulation_.body, numbers), ""});
   }
   const auto file = ResultFolder::field(static_cast<int>(states_.size()));
   write_vtu(folder_.path() / file, cloud);

@@ -24,7 +24,7 @@ class Recorder final : public Observer {
   using Clock = std::chrono::steady_clock;
   /// `start`: of this program's work on the run. With a checkpoint the files go on behind it: what was
   /// written later is cut off.
-  Recorder(const Simulation& simulation, const Probes& probes, const ResultFolder& folder, Progress& screen,
+  Recorder(const Simulation& simulation, Probes& probes, const ResultFolder& folder, Progress& screen,
            Log& log, Clock::time_point start, const Checkpoint* from);
 
   void progressed(const SolverProgress& progress) override;
@@ -59,7 +59,7 @@ class Recorder final : public Observer {
   [[nodiscard]] EnergySummary energy() const;
 
   const Simulation& simulation_;
-  const Probes& probes_;
+  Probes& probes_;
   const ResultFolder& folder_;
   Progress& screen_;
   Log& log_;

@@ -68,6 +68,9 @@ std::map<std::string, std::string> decisive_values(const Case& input) {
   if (const auto& points = input.geometry.points)
     values[points->is_mesh() ? "geometry.mesh.file" : "geometry.points.file"] =
         fingerprint(points->list->file);
+  for (std::size_t n = 0; n < input.cracks.size(); ++n)
+    if (const auto& crack = input.cracks[n].file)
+      values[fmt::format("crack.{}.surface.file", n)] = fingerprint(input.file.parent_path() / crack->file);
   if (const auto& surface = input.geometry.surface)
     values["geometry.surface.file"] = fingerprint(input.file.parent_path() / surface->file);
   return values;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <new>
@@ -84,11 +85,20 @@ RunStatus march_on(const Simulation& simulation, Recorder& recorder, Progress& s
   return RunStatus::failed;
 }
 
-/// The result keeps the tables, fields, points, mesh and surface that it came from: it runs again wherever it
-/// is moved, whatever becomes of the files.
+/// The result keeps the tables, fields, points, mesh and surfaces that it came from: it runs again wherever
+/// it is moved, whatever becomes of the files.
 void keep_tables(Case& input, const std::filesystem::path& folder) {
-  if (!input.tables.empty() || !input.fields.empty() || input.geometry.points || input.geometry.surface)
+  const bool cracks = std::any_of(input.cracks.begin(), input.cracks.end(),
+                                  [](const CrackInput& crack) { return crack.file.has_value(); });
+  if (!input.tables.empty() || !input.fields.empty() || input.geometry.points || input.geometry.surface ||
+      cracks)
     std::filesystem::create_directories(folder / "tables");
+  for (std::size_t n = 0; n < input.cracks.size(); ++n)  // no table has such a name
+    if (auto& crack = input.cracks[n].file) {
+      const std::string copy = fmt::format("tables/crack-{}.stl", n + 1);
+      std::filesystem::copy_file(input.file.parent_path() / crack->file, folder / copy);
+      crack->file = copy;
+    }
   if (auto& surface = input.geometry.surface) {
     const std::string copy = "tables/geometry-surface.stl";
     std::filesystem::copy_file(input.file.parent_path() / surface->file, folder / copy);
@@ -228,7 +238,7 @@ Summary run_case(const Case& input, const RunOptions& options) {
     return read_summary(start.folder->summary());
   }
   const Simulation simulation = build_simulation(input);
-  const Probes probes(simulation);
+  Probes probes(simulation);
   check_before_run(simulation, probes);
   if (!start.folder) start.folder.emplace(new_folder(simulation, options, options.force || options.resume));
   const ResultFolder& folder = *start.folder;

@@ -1,5 +1,6 @@
 #include "simulation/verify.hpp"
 
+#include "simulation/build_parts.hpp"
 #include "simulation/preflight.hpp"
 
 #include <fmt/format.h>
@@ -46,16 +47,17 @@ class Judge {
     throw InputError(expect.at, fmt::format("expect: the result has no output state at {:g}", *expect.state));
   }
 
-  void add_metric(const ExpectInput& expect) {
-    const SummaryState& at = state(expect);
-    const auto found = at.metrics.find(expect.metric);
+  void add_metric(const ExpectInput& given) {
+    const SummaryState& at = state(given);
+    const auto found = at.metrics.find(given.metric);
     if (found == at.metrics.end()) {
       std::string known;
       for (const auto& [name, metric] : at.metrics) known += (known.empty() ? "" : ", ") + name;
-      throw InputError(expect.at, fmt::format("expect: the case has no metric \"{}\"; its probes give {}",
-                                              expect.metric, known));
+      throw InputError(given.at, fmt::format("expect: the case has no metric \"{}\"; its probes give {}",
+                                             given.metric, known));
     }
     const Metric& ours = found->second;
+    const ExpectInput expect = in_unit_of_metric(given, ours.unit);
     Verdict verdict{.what = expect.metric,
                     .unit = ours.unit,
                     .at = at.value,
@@ -63,11 +65,6 @@ class Judge {
                     .source = expect.source};
     verdict.published = expect.kind == "published";
     verdict.decides = !verdict.published;
-    for (const auto* quantity : {&expect.value, &expect.absolute_tolerance, &expect.min, &expect.max})
-      if (*quantity && (*quantity)->dimension != (ours.unit.empty() ? "1" : ours.unit))
-        throw InputError(expect.at,
-                         fmt::format("expect: \"{}\" is in {}; expected a value in {}", expect.metric,
-                                     (*quantity)->dimension, ours.unit.empty() ? "no unit" : ours.unit));
     if (expect.value) hold_against_value(expect, ours.value, verdict);
     if (expect.min) verdict.met = verdict.met && ours.value >= expect.min->si;
     if (expect.max) verdict.met = verdict.met && ours.value <= expect.max->si;
@@ -120,7 +117,7 @@ class Judge {
 CompareSettings compare_settings(const Case& input, double exclude_within) {
   CompareSettings settings;
   for (const HoleInput& hole : input.holes) settings.defects.holes.push_back(hole.shape);
-  for (const CrackInput& crack : input.cracks) settings.defects.cracks.push_back(crack.segment);
+  for (const CrackInput& crack : input.cracks) add_crack(crack, settings.defects);
   for (const InclusionInput& inclusion : input.inclusions)
     settings.defects.inclusions.push_back(inclusion.shape);
   settings.spacing = input.geometry.spacing;

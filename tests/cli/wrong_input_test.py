@@ -43,6 +43,9 @@ CLOUD = replaced(PLAIN, BOX, POINTS)
 FIELDS = replaced(replaced(PLAIN, 'on = ["left", "right", "bottom", "top"]', 'on = "all"'), 'on = "right"', 'on = "all"')
 FIELDS = replaced(replaced(FIELDS + SET.format(name="all", where="x > -1 m"), "[material", '[field.part]\nfile = "rows.csv"\n\n[material'), "(stretch - 1)*x", "(stretch - 1)*part")
 MESH = replaced(PLAIN, BOX, 'mesh = { file = "sheet.msh", unit = "mm", thickness = "10 mm" }')
+POLYGON_KEY = 'polygon = [["20 mm", 0, 0], ["20 mm", "20 mm", 0], ["20 mm", "20 mm", "20 mm"], ["20 mm", 0, "20 mm"]]'
+POLYGON = f"\n[[crack]]\n{POLYGON_KEY}\n"
+CRACKED = HOLE + '\n[[crack]]\nfrom = ["60 mm", 0]\nto = ["70 mm", 0]\n'
 SOLID = replaced(BLOCK, BLOCK_BOX, 'surface = { file = "block.stl", unit = "mm", spacing = "5 mm" }')
 
 FREE = replaced(replaced(CLOUD, ', box = { size = ["0.2 m", "0.2 m"] }', ""), 'on = ["left", "right", "bottom", "top"]', 'on = "all"')
@@ -237,6 +240,33 @@ MISTAKES = [
     ("a surface without spacing", SOLID, ', spacing = "5 mm"', "", "surface =", "spacing: missing"),
     ("a surface below the spacing", SOLID, 'unit = "mm"', 'unit = "um"', "surface =", "is larger than the body"),
     ("a surface in no unit", SOLID, 'unit = "mm"', 'unit = "MPa"', "surface =", 'unit: found "MPa"; expected a unit of length'),
+    ("a crack with one end", CRACKED, 'to = ["70 mm", 0]', "", "from =", "needs both of its ends"),
+    ("a crack of two forms", CRACKED, 'to = ["70 mm", 0]', 'to = ["70 mm", 0]\npath = [[0, 0], ["1 mm", 0]]', "path =", "given together with from"),
+    ("a crack without length", CRACKED, '["70 mm", 0]', '["60 mm", 0]', "to =", "the same place as from"),
+    ("a path that stands still", CRACKED, 'from = ["60 mm", 0]\nto = ["70 mm", 0]', 'path = [["60 mm", 0], ["70 mm", 0], ["70 mm", 0]]', "path =",
+     "corners 2 and 3 are at the same place"),
+    ("a path of one place", CRACKED, 'from = ["60 mm", 0]\nto = ["70 mm", 0]', 'path = [["60 mm", 0]]', "path =", "found 1 places; expected 2 or more"),
+    ("a path without a unit", CRACKED, 'from = ["60 mm", 0]\nto = ["70 mm", 0]', 'path = [["60 mm", 0], [70, 0]]', "path =", "crack.1.path.2.1: 70 has no unit"),
+    ("a path outside", CRACKED, 'from = ["60 mm", 0]\nto = ["70 mm", 0]', 'path = [["1 m", 0], ["2 m", 0], ["2 m", "1 m"]]', "[[crack]]", "lies outside of the body"),
+    ("a polygon in the plane", CRACKED, 'from = ["60 mm", 0]\nto = ["70 mm", 0]', 'polygon = [[0, 0], ["1 mm", 0], [0, "1 mm"]]', "polygon =", "bodies in three dimensions; this one has 2"),
+    ("a line in space", BLOCK + POLYGON, POLYGON_KEY, 'from = [0, 0, 0]\nto = [0, 0, "9 mm"]', "from =", "bodies in two dimensions; this one has 3"),
+    ("a polygon that is not flat", BLOCK + POLYGON, '["20 mm", 0, "20 mm"]', '["21 mm", 0, "20 mm"]', "polygon =", "the corners do not lie in one plane"),
+    ("a polygon without area", BLOCK + POLYGON, POLYGON_KEY, 'polygon = [[0, 0, 0], ["1 mm", 0, 0], ["2 mm", 0, 0]]', "polygon =", "enclose no area"),
+    ("a polygon that crosses itself", BLOCK + POLYGON, POLYGON_KEY, 'polygon = [["20 mm", 0, 0], ["20 mm", "20 mm", "20 mm"], ["20 mm", "20 mm", 0], ["20 mm", 0, "5 mm"]]', "polygon =", "crosses the one from"),
+    ("a polygon outside", BLOCK + POLYGON, POLYGON_KEY, 'polygon = [["9 m", 0, 0], ["9 m", "1 mm", 0], ["9 m", 0, "1 mm"]]', "[[crack]]", "cuts no bond"),
+    ("a penny between the points", BLOCK + POLYGON, POLYGON_KEY, 'penny = { center = ["20 mm", "11 mm", "10.7 mm"], normal = [1, 0, 0], radius = "0.1 mm" }', "[[crack]]", "cuts no bond"),
+    ("a penny without a direction", BLOCK + POLYGON, POLYGON_KEY, 'penny = { normal = [0, 0, 0], radius = "9 mm" }', "penny =", "normal: has no direction"),
+    ("a penny of two numbers", BLOCK + POLYGON, POLYGON_KEY, 'penny = { normal = [0, 1], radius = "9 mm" }', "penny =", "found 2 entries; expected 3"),
+    ("a penny of no size", BLOCK + POLYGON, POLYGON_KEY, 'penny = { normal = [0, 1, 0], radius = "0 mm" }', "penny =", "expected a value above 0"),
+    ("no file of a crack", BLOCK + POLYGON, POLYGON_KEY, 'surface = { file = "crack.stl" }', "surface =", "crack.stl: there is no such file"),
+    ("a crack in no unit", BLOCK + POLYGON, POLYGON_KEY, 'surface = { file = "block.stl", unit = "s" }', "surface =", 'unit: found "s"; expected a unit of length'),
+    ("a path of a crack in space", BLOCK, 'kind = "reaction"\non = "right"', 'kind = "crack-length"', "[[probe]]", 'expected kind = "crack-area"'),
+    ("a speed without time", PLAIN, 'kind = "reaction"\non = "right"', 'kind = "crack-speed"', "kind =", "a speed needs a run in time"),
+    ("a speed between two rows", MOVING, 'kind = "reaction"\non = "right"', 'kind = "crack-speed"\nover = "1.5 ms"', "[[probe]]", "a slope over 0.0015 s needs rows"),
+    ("a crack at an edge", MOVING, 'kind = "reaction"', 'kind = "branches"', "[[probe]]", "edges have no points"),
+    ("an angle at the root", MOVING, 'kind = "reaction"\non = "right"', 'kind = "crack-angle"\nlength = "1 dx"', "[[probe]]", 'expected length = "2 horizon" or more'),
+    ("a threshold above all", MOVING, 'kind = "reaction"\non = "right"', 'kind = "branches"\ndamage = 1.5', "damage =", "at most 1"),
+    ("a reaction of nothing", MOVING, 'kind = "reaction"\non = "right"', 'kind = "reaction"', "[[probe]]", "on: missing"),
     ("unknown bonds", PLAIN, BOX, BOX + '\nbonds = "list"', "bonds =", 'did you mean "listed"?'),
     ("too many states", MOVING, 'every = "2 ms"', 'every = "1e-30 s"', "every =", "gives 4e+27 output states; expected 1e+06 at most"),
     ("too many rows", MOVING, 'history_every = "1 ms"', 'history_every = "1e-30 s"', "history_every =", "rows of the history"),
@@ -327,7 +357,8 @@ class WrongInput(ProgramTest):
 
     def test_the_cases_are_right_without_the_mistake(self):
         for name, text in {"plain": PLAIN + EXPECT, "hole": HOLE + FIELD, "moving": MOVING, "table": TABLE,
-                           "steps": STATIC_TABLE, "mesh": MESH, "solid": SOLID, "fields": FIELDS}.items():
+                           "steps": STATIC_TABLE, "mesh": MESH, "solid": SOLID, "fields": FIELDS, "cracked": CRACKED,
+                           "polygon": BLOCK + POLYGON}.items():
             self.command("check", self.write(f"{name}.toml", text))
 
     def test_three_dimensions_have_no_membrane(self):

@@ -58,7 +58,7 @@ TEST(CaseReader, ReadsARunInTime) {
   EXPECT_EQ(std::get<Box>(c.geometry.shape).center, (Point{0.05, 0, 0}));
   EXPECT_NEAR(std::get<Box>(c.holes.at(1).shape).center[0], 0.071, 1e-15);
   EXPECT_NEAR(std::get<Box>(c.holes.at(1).shape).center[1], 0.002, 1e-15);
-  EXPECT_EQ(c.cracks.at(0).segment.b, (Point{0.01, 0, 0}));
+  EXPECT_EQ(c.cracks.at(0).segments.at(0).b, (Point{0.01, 0, 0}));
   EXPECT_EQ(c.inclusions.at(0).motion, "fixed");
   EXPECT_EQ(c.inclusions[1].motion, "free");
   EXPECT_DOUBLE_EQ(c.materials.at(0).density, 1100);
