@@ -47,6 +47,7 @@ Recorder::Recorder(const Simulation& simulation, const Probes& probes, const Res
       history_(open_history(folder.history(), simulation.parameter, probes.columns(), from, kHistoryBytes)),
       energy_(open_history(folder.energy(), simulation.parameter, kEnergyColumns, from, kEnergyBytes)),
       collection_(folder.collection()),
+      largest_(probes.largest()),
       start_(start),
       last_checkpoint_(Clock::now()),
       case_values_(decisive_values(simulation.input)) {
@@ -57,6 +58,7 @@ template <class Self, class Each>
 void Recorder::each_member(Self& self, const Each& each) {
   State::each_member(self.last_, "recorder.last", each);
   each("recorder.last_values", self.last_values_);
+  LargestValues::each_member(self.largest_, "recorder.largest", each);
   each("recorder.evaluations", self.evaluations_);
   each("recorder.iterations", self.iterations_);
   each("recorder.last_written", self.last_written_);
@@ -150,7 +152,7 @@ void Recorder::reached(const State& state, const Constraints& constraints, bool 
   evaluations_ = state.evaluations;
   iterations_ = state.iterations;
   last_written_ = false;
-  last_values_ = probes_.evaluate(state, constraints);
+  last_values_ = probes_.evaluate(state, constraints, largest_);
   history_.add(state.parameter, last_values_);
   const EnergySummary now = energy();
   energy_.add(state.parameter,

@@ -68,6 +68,7 @@ class Recorder final : public Observer {
   State last_;
   Snapshot last_model_;              // what the model remembered then
   std::vector<double> last_values_;  // of the probes
+  LargestValues largest_;
   long evaluations_ = 0, iterations_ = 0;
   bool last_written_ = true;
   bool rotations_told_ = false;
