@@ -186,7 +186,7 @@ Wanted what_is_wanted(const SweepOptions& options, const Case& input) {
 }  // namespace
 
 std::string SweepPlan::text(const SweepVariant& variant) const {
-  return fmt::format("{}", fmt::join(assignments(keys, variant.values), ", "));
+  return fmt::format("{}", fmt::join(assignments(labels, variant.values), ", "));
 }
 
 std::vector<std::size_t> SweepPlan::groups() const {
