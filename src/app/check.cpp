@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/commands.hpp"
+#include "app/sweep_plan.hpp"
 #include "base/machine.hpp"
 #include "base/text.hpp"
 #include "geometry/surface.hpp"
@@ -13,6 +14,7 @@
 #include "input/case_writer.hpp"
 #include "input/material_format.hpp"
 #include "input/schema.hpp"
+#include "input/set_format.hpp"
 #include "simulation/estimate.hpp"
 #include "simulation/materials.hpp"
 #include "simulation/preflight.hpp"
@@ -25,8 +27,40 @@ namespace riven::app {
 
 namespace {
 
+double volume_of(const Body& body, const std::vector<std::size_t>& points) {
+  double volume = 0;
+  for (const std::size_t i : points) volume += body.volume[i];
+  return volume;
+}
+
+/// How well points fill the shapes of a set, and where those lie that a seed has put somewhere.
+void print_shapes(const SetInput& in, const PointSet& set, const Simulation& simulation) {
+  const std::vector<TurnedShape> shapes = shapes_of(in);
+  if (shapes.empty()) return;
+  const Body& body = *simulation.body;
+  std::vector<std::size_t> stored;
+  for (const std::size_t i : set.points) stored.push_back(body.points[i]);
+  const GeometryInput& geometry = simulation.input.geometry;
+  double sum = 0;
+  for (const TurnedShape& shape : shapes)
+    sum += measure(shape, geometry.dimension) * (geometry.dimension < 3 ? geometry.thickness : 1);
+  const double whole = volume_of(body, body.points);
+  const std::string exact =
+      std::isfinite(sum) ? fmt::format(", the shapes add up to {:.4g} %", 1e2 * sum / whole) : "";
+  fmt::print("#   {}: its points have {:.4g} % of the body's volume{}\n",
+             count_text(static_cast<double>(shapes.size()), "shape"), 1e2 * volume_of(body, stored) / whole,
+             exact);
+  if (!in.random_discs && !in.random_balls) return;
+  for (const TurnedShape& shape : shapes) {
+    const Point center = center_of(shape);
+    fmt::print("#   center ({:.6g}) m\n",
+               fmt::join(center.begin(), center.begin() + geometry.dimension, ", "));
+  }
+}
+
 void print_sets(const Simulation& simulation) {
-  for (const PointSet& set : simulation.sets) {
+  for (std::size_t n = 0; n < simulation.sets.size(); ++n) {
+    const PointSet& set = simulation.sets[n];
     Point lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};
     for (const std::size_t i : set.points) {
       const Point x = simulation.body->position(simulation.body->points[i]);
@@ -37,6 +71,7 @@ void print_sets(const Simulation& simulation) {
     }
     fmt::print("# set {}: {} points, x {:g} to {:g} m, y {:g} to {:g} m\n", set.name, set.points.size(),
                lower[0], upper[0], lower[1], upper[1]);
+    print_shapes(simulation.input.sets[n], set, simulation);
   }
 }
 
@@ -103,8 +138,6 @@ std::string extent_text(const Body& body) {
 void print_model(const Simulation& simulation) {
   const Model& model = *simulation.model;
   const Body& body = *simulation.body;
-  double volume = 0;
-  for (const std::size_t i : body.points) volume += body.volume[i];
   if (const auto& points = simulation.input.geometry.points)
     fmt::print("# {}: {} in {}, filling {}\n", points->is_mesh() ? "elements" : "points",
                points->list->position.size(), points->list->file, extent_text(body));
@@ -116,7 +149,7 @@ void print_model(const Simulation& simulation) {
                                 ? std::string("with listed bonds, mean spacing")
                                 : fmt::format("of {} cells, spacing", fmt::join(on->lattice.cells(), " x "));
   fmt::print("# body: {} points {} {:.6g} m, volume {:.6g} m^3, {} ghost points behind loaded edges\n",
-             model.points(), cells, body.spacing, volume, body.ghosts.size());
+             model.points(), cells, body.spacing, volume_of(body, body.points), body.ghosts.size());
   const std::string neighbours =
       on == nullptr ? std::string("listed") : fmt::format("{} neighbours", on->stencil.size());
   fmt::print("# bonds: {} directed, {} within the horizon of {:g} spacings\n", model.bonds(), neighbours,
@@ -153,6 +186,13 @@ void check_short(const Case& input, std::vector<std::string> set) {
   check_before_run(simulation, Probes(simulation));
 }
 
+/// What the study runs, every variant checked.
+std::string study_text(const Options& options) {
+  const SweepPlan plan = plan_sweep({.target = options.target, .set = options.set});
+  return fmt::format("{} over {}", count_text(static_cast<double>(plan.variants.size()), "variant"),
+                     fmt::join(plan.labels, ", "));
+}
+
 }  // namespace
 
 int check(const Options& options) {
@@ -164,11 +204,13 @@ int check(const Options& options) {
   check_before_run(simulation, probes);
   check_disk(simulation, available_disk(default_output(input.file)));
   if (input.short_run) check_short(input, options.set);
+  const std::string study = input.study ? study_text(options) : "";
   fmt::print("{}\n", resolved_case(input));
   print_tables(input);
   print_fields(input);
   print_model(simulation);
   print_cost(simulation);
+  if (!study.empty()) fmt::print("# study: {}\n", study);
   for (const HistoryColumn& column : probes.columns())
     fmt::print("# metric {}{}\n", column.name, column.unit.empty() ? "" : " [" + column.unit + "]");
   if (unreached > 0) fmt::print("# {}\n", left_out(unreached));

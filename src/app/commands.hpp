@@ -70,13 +70,14 @@ struct VerifyOptions {
 };
 
 struct SweepOptions {
-  std::string target;             // case file or the name of a shipped case
-  std::vector<std::string> keys;  // KEY=a,b,c
-  std::vector<std::string> set;   // --set path=value, of all variants
-  std::filesystem::path output;   // -o; empty: the default
+  std::string target;              // case file or the name of a shipped case
+  std::vector<std::string> keys;   // KEY=a,b,c; none: those of the case's study
+  std::vector<std::string> plots;  // "x, y"; none: those of the study, or a choice
+  std::vector<std::string> set;    // --set path=value, of all variants
+  std::filesystem::path output;    // -o; empty: the default
   bool force = false;
   bool resume = false;
-  int jobs = 1;     // runs side by side
+  int jobs = 0;     // runs side by side; 0: as many as there are cores
   int threads = 0;  // of each run; 0: the cores divided among them
   bool report = false;
 };

@@ -236,10 +236,19 @@ class CommandLine {
 
   void add_sweep() {
     SweepOptions& to = sweep_;
-    CLI::App& command = add("sweep", "Run a case with several values of some keys: riven sweep CASE KEY=a,b",
-                            [&to] { return sweep(to); });
+    CLI::App& command =
+        add("sweep", "Run a case with several values of some keys: riven sweep CASE [KEY=a,b]",
+            [&to] { return sweep(to); });
     command.add_option("case", to.target, "Case file, or the name of a shipped case")->required();
-    command.add_option("keys", to.keys, "KEY=a,b,c: as for --set, all combinations are run")->required();
+    command.add_option(
+        "keys", to.keys,
+        "KEY=a,b,c: as for --set, all combinations are run; KEY1,KEY2=(a,b),(c,d) of keys that change "
+        "together (default: the case's [study])");
+    command
+        .add_option("--plot", to.plots,
+                    "What the chart shows: X,Y, columns of the histories, or KEY,METRIC (may be repeated)")
+        ->type_size(1)
+        ->allow_extra_args(false);
     command
         .add_option("--set", to.set, "Override a key of all variants: path.to.key=value (may be repeated)")
         ->type_size(1)
@@ -247,7 +256,8 @@ class CommandLine {
     command.add_option("-o,--output", to.output, "Folder of the results (default: results/<case>-sweep)");
     CLI::Option* force = command.add_flag("--force", to.force, "Replace an existing sweep");
     command.add_flag("--resume", to.resume, "Go on with a sweep that stopped")->excludes(force);
-    command.add_option("-j,--jobs", to.jobs, "Runs side by side (default: 1)")->check(CLI::Range(1, 1024));
+    command.add_option("-j,--jobs", to.jobs, "Runs side by side (default: as many as there are cores)")
+        ->check(CLI::Range(1, 1024));
     command
         .add_option("--threads", to.threads, "Threads of each run (default: the cores divided among them)")
         ->check(CLI::Range(1, 1024));

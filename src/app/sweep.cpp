@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <omp.h>
 #include <unistd.h>
 
@@ -12,6 +13,7 @@
 
 #include "app/child_run.hpp"
 #include "app/commands.hpp"
+#include "app/sweep_charts.hpp"
 #include "app/sweep_plan.hpp"
 #include "app/sweep_results.hpp"
 #include "base/error.hpp"
@@ -43,9 +45,12 @@ std::string mark_text(const SweepPlan& plan, const SweepOptions& options) {
   std::string text =
       fmt::format("case = {}\nset = {}\n", nlohmann::json(fs::absolute(plan.file).string()).dump(),
                   toml_list(options.set));
-  for (const SweptKey& key : plan.keys)
-    text += fmt::format("\n[[key]]\nname = {}\nvalues = {}\n", nlohmann::json(key.name).dump(),
-                        toml_list(key.values));
+  for (const SweptKeys& keys : plan.swept) {
+    std::vector<std::string> values;
+    for (std::size_t row = 0; row < keys.values.size(); ++row) values.push_back(keys.text(row));
+    text += fmt::format("\n[[key]]\nname = {}\nvalues = {}\n", nlohmann::json(keys.name()).dump(),
+                        toml_list(values));
+  }
   return text + fmt::format("\n[case_values]\nchecksum = \"{:08x}\"\n", plan.checksum);
 }
 
@@ -99,9 +104,7 @@ class SweepFolder {
 class SweepRuns {
  public:
   SweepRuns(const SweepPlan& plan, const fs::path& folder, const SweepOptions& options)
-      : options_(options),
-        threads_(options.threads > 0 ? options.threads
-                                     : std::max(1, omp_get_num_procs() / std::max(1, options.jobs))),
+      : threads_(options.threads > 0 ? options.threads : std::max(1, omp_get_num_procs() / plan.jobs)),
         results_{plan, folder, std::vector<SweepOutcome>(plan.variants.size())} {}
 
   /// Returns when all have ended, or have been stopped by an interrupt.
@@ -110,7 +113,7 @@ class SweepRuns {
     std::size_t next = 0;
     const std::size_t count = results_.plan.variants.size();
     while (!running_.empty() || (next < count && !interrupt_requested())) {
-      while (next < count && running_.size() < static_cast<std::size_t>(options_.jobs) &&
+      while (next < count && running_.size() < static_cast<std::size_t>(results_.plan.jobs) &&
              !interrupt_requested())
         start(next++);
       std::this_thread::sleep_for(kMoment);
@@ -195,7 +198,6 @@ class SweepRuns {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
 
-  const SweepOptions& options_;
   int threads_;
   SweepResults results_;
   std::list<Running> running_;
@@ -207,7 +209,9 @@ std::string resume_command(const SweepOptions& options, const fs::path& folder) 
   std::string command = "riven sweep " + shell_word(options.target);
   for (const std::string& key : options.keys) command += fmt::format(" {}", shell_word(key));
   for (const std::string& set : options.set) command += fmt::format(" --set {}", shell_word(set));
-  command += fmt::format(" -o {} -j {}", shell_word(folder.string()), options.jobs);
+  for (const std::string& plot : options.plots) command += fmt::format(" --plot {}", shell_word(plot));
+  command += fmt::format(" -o {}", shell_word(folder.string()));
+  if (options.jobs > 0) command += fmt::format(" -j {}", options.jobs);
   if (options.threads > 0) command += fmt::format(" --threads {}", options.threads);
   if (options.report) command += " --report";
   return command + " --resume";
@@ -235,16 +239,15 @@ int sweep(const SweepOptions& options) {
       options.output.empty() ? fs::path(default_output(plan.file).string() + "-sweep") : options.output;
   const SweepFolder folder(path, mark_text(plan, options), options);
   fmt::print(stderr, "{}: {}, {} at a time -> {}\n", plan.title,
-             count_text(static_cast<double>(plan.variants.size()), "variant"), options.jobs, path.string());
+             count_text(static_cast<double>(plan.variants.size()), "variant"), plan.jobs, path.string());
   watch_interrupts();
   SweepRuns runs(plan, path, options);
   const SweepResults& results = runs.run();
-  write_sweep_csv(results);
-  const bool drawn = draw_sweep(results);
-  if (!drawn) fs::remove(path / "sweep.png");  // of the runs before
+  std::vector<std::string> files = write_sweep_tables(results);
+  for (std::string& picture : draw_sweep(results)) files.push_back(std::move(picture));
   fmt::print("{}", sweep_table(results));
   const int reported = options.report ? report_after(reached(results), path) : kDone;
-  fmt::print(stderr, "results: {}/ (sweep.csv{})\n", path.string(), drawn ? ", sweep.png" : "");
+  fmt::print(stderr, "results: {}/ ({})\n", path.string(), fmt::join(files, ", "));
   if (interrupt_requested()) {
     fmt::print(stderr, "warning: interrupted. To go on: {}\n", resume_command(options, path));
     return kInterrupted;

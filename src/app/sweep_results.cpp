@@ -7,13 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <set>
 
 #include "base/csv.hpp"
 #include "base/text.hpp"
 #include "output/atomic_file.hpp"
-#include "output/result_folder.hpp"
-#include "report/chart.hpp"
 #include "report/ticks.hpp"
 
 namespace riven::app {
@@ -48,26 +45,23 @@ std::vector<HistoryColumn> metric_columns(const SweepResults& results) {
   return in_order(all, results.plan);
 }
 
-double metric_of(const SweepOutcome& outcome, const std::string& name) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (!outcome.summary) return kNone;
-  const auto found = outcome.summary->metrics.find(name);
-  return found == outcome.summary->metrics.end() ? kNone : found->second.value;
-}
-
 double wall_s(const SweepOutcome& outcome) {
   return outcome.summary ? outcome.summary->timing.wall_s : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// The SI values of a key, if it is a number in all variants.
-std::optional<std::vector<SiValue>> si_values(const SweepPlan& plan, std::size_t key) {
-  std::vector<SiValue> values;
-  for (const SweepVariant& variant : plan.variants) {
-    if (!variant.si[key] || variant.si[key]->unit != plan.variants.front().si[key]->unit) return std::nullopt;
-    values.push_back(*variant.si[key]);
+/// A CSV file that is written whole or not at all.
+class CsvFile {
+ public:
+  explicit CsvFile(const std::filesystem::path& path) : file_(path) {}
+  void write(Row row) {
+    for (std::string& cell : row) cell = csv_cell(cell);
+    file_.stream() << fmt::format("{}\n", fmt::join(row, ","));
   }
-  return values;
-}
+  void commit() { file_.commit(); }
+
+ private:
+  AtomicFile file_;
+};
 
 std::string aligned(const std::vector<Row>& rows, std::size_t left_columns) {
   std::vector<std::size_t> width(rows.front().size());
@@ -83,59 +77,113 @@ std::string aligned(const std::vector<Row>& rows, std::size_t left_columns) {
   return text;
 }
 
-/// Metrics of the first probe over the one key.
-Chart chart_over_key(const SweepResults& results, const std::vector<SiValue>& at) {
-  const SweepPlan& plan = results.plan;
-  Chart chart{.title = plan.title, .x = {plan.keys.front().name, at.front().unit}};
-  chart.y = {plan.first_probe.front().name, plan.first_probe.front().unit};
-  std::vector<std::size_t> order(at.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return at[a].value < at[b].value; });
-  std::erase_if(order, [&](std::size_t n) { return results.outcomes[n].status != "finished"; });
-  for (const HistoryColumn& metric : plan.first_probe) {
-    if (metric.unit != chart.y.unit) continue;
-    Series series{.name = metric.name};
-    for (const std::size_t n : order) {
-      series.x.push_back(at[n].value);
-      series.y.push_back(metric_of(results.outcomes[n], metric.name));
+/// Of the variants that differ in their seeds only.
+struct Spread {
+  std::size_t count = 0;
+  double mean = 0, deviation = 0;  // nan without values; the deviation of one value, too
+};
+
+Spread spread_of(const std::vector<double>& values) {
+  const auto count = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+  double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return {values.size(), mean, std::sqrt(squares / (count - 1))};
+}
+
+/// Finished variants of a group that have the metric.
+Spread spread_of(const SweepResults& results, std::size_t group, const std::string& metric) {
+  const std::vector<std::size_t> groups = results.plan.groups();
+  std::vector<double> values;
+  for (std::size_t n = 0; n < groups.size(); ++n)
+    if (groups[n] == group && results.outcomes[n].status == "finished" &&
+        !std::isnan(metric_of(results.outcomes[n], metric)))
+      values.push_back(metric_of(results.outcomes[n], metric));
+  return spread_of(values);
+}
+
+/// Calls `visit(group, values)` for each group with the values of the keys that are no seeds.
+template <class Visit>
+void each_group(const SweepPlan& plan, const Visit& visit) {
+  const std::vector<std::size_t> groups = plan.groups();
+  std::size_t next = 0;
+  for (std::size_t n = 0; n < groups.size(); ++n)
+    if (groups[n] == next) visit(next++, without_seeds(plan, plan.variants[n].values));
+}
+
+std::size_t finished_in(const SweepResults& results, std::size_t group) {
+  const std::vector<std::size_t> groups = results.plan.groups();
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < groups.size(); ++n)
+    count += groups[n] == group && results.outcomes[n].status == "finished" ? 1 : 0;
+  return count;
+}
+
+/// Means over the seeds, for the screen.
+std::string means_table(const SweepResults& results, const std::vector<HistoryColumn>& metrics) {
+  std::vector<Row> rows{without_seeds(results.plan, results.plan.labels)};
+  const std::size_t keys = rows[0].size();
+  rows[0].emplace_back("runs");
+  for (const auto& [name, unit] : metrics) rows[0].push_back(with_unit(name, unit));
+  each_group(results.plan, [&](std::size_t group, Row row) {
+    row.push_back(fmt::format("{}", finished_in(results, group)));
+    for (const auto& [name, unit] : metrics) {
+      const Spread spread = spread_of(results, group, name);
+      row.push_back(spread.count == 0   ? ""
+                    : spread.count == 1 ? fmt::format("{:.6g}", spread.mean)
+                                        : fmt::format("{:.6g} ± {:.2g}", spread.mean, spread.deviation));
     }
-    chart.series.push_back(std::move(series));
-  }
-  if (chart.series.size() > 1) chart.y.name = "";
-  return chart;
+    rows.push_back(std::move(row));
+  });
+  return "mean over the seeds ± standard deviation\n" + aligned(rows, keys);
 }
 
-/// A variant in a legend: only the last parts of the keys' names, if they differ.
-std::string short_text(const SweepPlan& plan, const SweepVariant& variant) {
-  std::set<std::string> names;
-  std::vector<std::string> parts;
-  for (std::size_t n = 0; n < plan.keys.size(); ++n) {
-    const std::string name = plan.keys[n].name.substr(plan.keys[n].name.rfind('.') + 1);
-    names.insert(name);
-    parts.push_back(fmt::format("{}={}", name, variant.values[n]));
-  }
-  return names.size() == parts.size() ? fmt::format("{}", fmt::join(parts, ", ")) : plan.text(variant);
-}
-
-/// The first column of each history.
-Chart chart_of_histories(const SweepResults& results) {
-  const SweepPlan& plan = results.plan;
-  Chart chart{.title = plan.title};
-  for (std::size_t n = 0; n < plan.variants.size(); ++n) {
-    const auto folder = results.folder / plan.variants[n].name;
-    if (!results.outcomes[n].summary) continue;
-    const History history = History::read(ResultFolder::open(folder).history());
-    const auto [x, x_unit] = name_and_unit(history.columns()[0]);
-    const auto [y, y_unit] = name_and_unit(history.columns()[1]);
-    chart.x = {x, x_unit};
-    chart.y = {y, y_unit};
-    chart.series.push_back({short_text(plan, plan.variants[n]), history.parameter(), history.column(y)});
-  }
-  return chart;
+/// `sweep-means.csv`: the same with all digits.
+void write_means(const SweepResults& results, const std::vector<HistoryColumn>& metrics) {
+  CsvFile file(results.folder / "sweep-means.csv");
+  Row header = without_seeds(results.plan, results.plan.keys);
+  header.emplace_back("runs");
+  for (const auto& [name, unit] : metrics)
+    header.insert(header.end(), {with_unit(name + " mean", unit), with_unit(name + " deviation", unit)});
+  file.write(header);
+  each_group(results.plan, [&](std::size_t group, Row row) {
+    row.push_back(fmt::format("{}", finished_in(results, group)));
+    for (const auto& metric : metrics) {
+      const Spread spread = spread_of(results, group, metric.name);
+      row.push_back(fmt::format("{}", spread.mean));
+      row.push_back(fmt::format("{}", spread.deviation));
+    }
+    file.write(row);
+  });
+  file.commit();
 }
 
 }  // namespace
+
+double metric_of(const SweepOutcome& outcome, const std::string& name) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (!outcome.summary) return kNone;
+  const auto found = outcome.summary->metrics.find(name);
+  return found == outcome.summary->metrics.end() ? kNone : found->second.value;
+}
+
+std::optional<std::vector<SiValue>> si_values(const SweepPlan& plan, std::size_t key) {
+  std::vector<SiValue> values;
+  for (const SweepVariant& variant : plan.variants) {
+    if (!variant.si[key] || variant.si[key]->unit != plan.variants.front().si[key]->unit) return std::nullopt;
+    values.push_back(*variant.si[key]);
+  }
+  return values;
+}
+
+std::vector<std::string> without_seeds(const SweepPlan& plan, const std::vector<std::string>& of_keys) {
+  std::vector<std::string> kept;
+  std::size_t key = 0;
+  for (const SweptKeys& swept : plan.swept)
+    for (std::size_t n = 0; n < swept.names.size(); ++n, ++key)
+      if (!swept.repeats()) kept.push_back(of_keys[key]);
+  return kept;
+}
 
 std::string metrics_text(const Metrics& metrics, const SweepPlan& plan) {
   std::vector<std::string> parts;
@@ -152,7 +200,7 @@ std::string sweep_table(const SweepResults& results) {
   const std::size_t more = metrics.size() - std::min(metrics.size(), kMostMetrics);
   metrics.resize(metrics.size() - more);
   std::vector<Row> rows(1);
-  for (const SweptKey& key : plan.keys) rows[0].push_back(key.name);
+  rows[0] = plan.labels;
   rows[0].emplace_back("status");
   for (const auto& [name, unit] : metrics) rows[0].push_back(with_unit(name, unit));
   rows[0].emplace_back("wall time");
@@ -168,29 +216,26 @@ std::string sweep_table(const SweepResults& results) {
   }
   const std::string left_out =
       more > 0 ? fmt::format("{} in sweep.csv\n", count_text(static_cast<double>(more), "more metric")) : "";
-  return aligned(rows, plan.keys.size() + 1) + left_out;
+  const std::string means = plan.repeats() ? means_table(results, metrics) : "";
+  return aligned(rows, plan.keys.size() + 1) + left_out + means;
 }
 
-void write_sweep_csv(const SweepResults& results) {
+std::vector<std::string> write_sweep_tables(const SweepResults& results) {
   const SweepPlan& plan = results.plan;
   const std::vector<HistoryColumn> metrics = metric_columns(results);
   Row header;
   std::vector<std::optional<std::vector<SiValue>>> si;
   for (std::size_t k = 0; k < plan.keys.size(); ++k) {
     si.push_back(si_values(plan, k));
-    header.push_back(plan.keys[k].name);
-    if (si.back()) header.push_back(with_unit(plan.keys[k].name + "_si", si.back()->front().unit));
+    header.push_back(plan.keys[k]);
+    if (si.back()) header.push_back(with_unit(plan.keys[k] + "_si", si.back()->front().unit));
   }
   header.emplace_back("status");
   for (const auto& [name, unit] : metrics) header.push_back(with_unit(name, unit));
   header.insert(header.end(), {"wall [s]", "folder"});
 
-  AtomicFile file(results.folder / "sweep.csv");
-  const auto write = [&](Row row) {
-    for (std::string& cell : row) cell = csv_cell(cell);
-    file.stream() << fmt::format("{}\n", fmt::join(row, ","));
-  };
-  write(header);
+  CsvFile file(results.folder / "sweep.csv");
+  file.write(header);
   for (std::size_t n = 0; n < plan.variants.size(); ++n) {
     Row row;
     for (std::size_t k = 0; k < plan.keys.size(); ++k) {
@@ -202,20 +247,12 @@ void write_sweep_csv(const SweepResults& results) {
       row.push_back(fmt::format("{}", metric_of(results.outcomes[n], name)));
     row.push_back(fmt::format("{}", wall_s(results.outcomes[n])));
     row.push_back(plan.variants[n].name);
-    write(row);
+    file.write(row);
   }
   file.commit();
-}
-
-bool draw_sweep(const SweepResults& results) {
-  const SweepPlan& plan = results.plan;
-  if (plan.first_probe.empty()) return false;
-  const auto numbers = plan.keys.size() == 1 ? si_values(plan, 0) : std::nullopt;
-  const Chart chart = numbers ? chart_over_key(results, *numbers) : chart_of_histories(results);
-  if (chart.series.empty() || chart.series.front().x.empty()) return false;
-  const std::filesystem::path path = results.folder / "sweep.png";
-  write_picture(path, draw_chart(chart, PictureSize{}, path));
-  return true;
+  if (!plan.repeats()) return {"sweep.csv"};
+  write_means(results, metrics);
+  return {"sweep.csv", "sweep-means.csv"};
 }
 
 }  // namespace riven::app

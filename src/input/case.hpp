@@ -10,7 +10,9 @@
 
 #include "base/error.hpp"
 #include "geometry/crack_surface.hpp"
+#include "geometry/random_places.hpp"
 #include "geometry/shape.hpp"
+#include "geometry/turned_shape.hpp"
 #include "input/expression.hpp"
 #include "input/point_list.hpp"
 
@@ -94,11 +96,18 @@ struct InclusionInput {  // [[inclusion]]: rigid and bonded to the body
   Location at;
 };
 
-struct SetInput {  // [set.NAME]: exactly one of where, group and a shape
+struct RandomShapesInput {  // random_discs, random_balls of a set
+  RandomPlaces places;
+  std::vector<Point> centers;  // what follows from them
+};
+
+struct SetInput {  // [set.NAME]: exactly one of where, group, a shape and a list of shapes
   std::string name;
   std::string group;  // of the mesh
   std::optional<Expression> where;
   std::optional<Shape> shape;
+  std::vector<TurnedShape> boxes, discs, balls;
+  std::optional<RandomShapesInput> random_discs, random_balls;
   Location at;
 };
 
@@ -209,12 +218,14 @@ struct OutputInput {                    // [output]
 
 struct ProbeInput {  // [[probe]]
   std::string name;
-  std::string kind;  // "reaction", "nominal-stress", "displacement", "stretch", or one of cracks
+  // "reaction", "nominal-stress", "displacement", "stretch", "strain", "largest", or one of cracks
+  std::string kind;
   std::string
       component;  // reaction, displacement: only this one of "x", "y", "z", under the probe's own name
   Named on;       // reaction, nominal-stress: an edge or a set; of cracks: a set, or nothing for all
   std::optional<Point> position;  // displacement: a place in the undeformed body (m)
-  std::optional<Point> from, to;  // stretch: deformed over undeformed distance of two places
+  std::optional<Point> from, to;  // stretch, strain: two places, whose deformed distance is compared
+  std::string of, gives;          // largest: a column, and the one of which it gives the value there
   std::optional<double> damage;   // of cracks: share of the bonds that a point of a crack has lost
   std::optional<double> over;     // crack-speed: s
   std::optional<double> length;   // crack-angle, branches: m
@@ -249,6 +260,12 @@ struct ShortInput {              // [short]: what `riven verify --short` runs
   Location at;
 };
 
+struct StudyInput {                // [study]: what `riven sweep` runs and draws if it is given no keys
+  std::vector<std::string> keys;   // as on its command line
+  std::vector<std::string> plots;  // as for --plot
+  Location at;
+};
+
 struct Case {
   std::filesystem::path file;
   std::string title;
@@ -271,6 +288,7 @@ struct Case {
   std::vector<ProbeInput> probes;
   std::vector<ExpectInput> expects;
   std::optional<ShortInput> short_run;
+  std::optional<StudyInput> study;
 };
 
 }  // namespace riven

@@ -12,8 +12,11 @@
 #include "input/crack_probe_format.hpp"
 #include "input/field_format.hpp"
 #include "input/format.hpp"
+#include "input/format_lists.hpp"
 #include "input/model_format.hpp"
+#include "input/set_format.hpp"
 #include "input/shape_format.hpp"
+#include "input/study_format.hpp"
 #include "input/table_format.hpp"
 
 namespace riven {
@@ -23,14 +26,12 @@ using kind::AnyUnit;
 using kind::Components;
 using kind::Integer;
 using kind::Interval;
-using kind::NamedTables;
 using kind::Part;
 using kind::Parts;
 using kind::Place;
 using kind::Quantities;
 using kind::Quantity;
 using kind::Table;
-using kind::Tables;
 using kind::Text;
 using kind::Texts;
 
@@ -42,26 +43,6 @@ When method(const Case& c, const std::string& value) {
   return {"solver.method", &c.solver.method, {value}};
 }
 
-// An array of tables over a vector whose elements `describe_one` describes.
-template <class Item, class Describe>
-Tables tables(std::vector<Item>& items, Describe describe_one) {
-  return {[&items] { return items.size(); },
-          [&items, describe_one](std::size_t i) {
-            if (i == items.size()) items.emplace_back();
-            return describe_one(items[i], i);
-          }};
-}
-
-template <class Item, class Describe>
-NamedTables named_tables(std::vector<Item>& items, Describe describe_one) {
-  return {[&items] { return items.size(); },
-          [&items, describe_one](std::size_t i) { return describe_one(items[i]); },
-          [&items](std::size_t i) -> std::string& {
-            if (i == items.size()) items.emplace_back();
-            return items[i].name;
-          }};
-}
-
 // Two of a kind must not share a name: probes name columns, sets name regions.
 template <class Item>
 void check_new_name(const std::vector<Item>& items, const Item& item, const Check& check) {
@@ -69,11 +50,6 @@ void check_new_name(const std::vector<Item>& items, const Item& item, const Chec
     if (&other != &item && other.name == item.name)
       check.fail("name", fmt::format("\"{}\" is the name of another one at {}; expected a new name",
                                      item.name, other.at.text()));
-}
-
-void check_shape(const Shape& shape, const Case& c, const Check& check) {
-  if (std::holds_alternative<Ball>(shape) && c.geometry.dimension != 3)
-    check.fail("ball", "belongs to bodies in three dimensions; expected disc or box");
 }
 
 // ---- what interrupts the body ----
@@ -103,38 +79,6 @@ Format describe(InclusionInput& inclusion, const Case& c) {
           .finish = [shape, &inclusion, &c](const Check& check) {
             inclusion.shape = shape->value();
             check_shape(inclusion.shape, c, check);
-          }};
-}
-
-void check_group(const std::string& group, const GeometryInput& geometry, const Check& check) {
-  if (!geometry.points || !geometry.points->is_mesh())
-    check.fail("group", "belongs to bodies from a mesh (geometry.mesh); expected where or a shape");
-  std::vector<std::string> names;
-  for (const PointGroup& known : geometry.points->list->groups) names.push_back(known.name);
-  if (std::find(names.begin(), names.end(), group) == names.end())
-    check.fail("group", fmt::format("the mesh has no physical group \"{}\"; it has {}{}", group,
-                                    names.empty() ? "none" : listed(names), did_you_mean(group, names)));
-}
-
-Format describe(SetInput& set, const Case& c) {
-  std::vector<Key> keys = {
-      Key{"where", kind::Condition{&set.where}, "A formula of x, y, z that is true in the set."},
-      Key{"group", Text{&set.group},
-          "A physical group of the mesh, by its name: the points of its elements, or, of a group of edges or "
-          "faces, "
-          "those of the elements that touch it."}};
-  for (Key& key : shape_keys(set.shape)) keys.push_back(std::move(key));
-  return {.doc = "A named set of points, for loads and probes.",
-          .at = &set.at,
-          .keys = std::move(keys),
-          .groups = {{{"where", "group", "disc", "box", "ball"}}},
-          .finish = [&set, &c](const Check& check) {
-            if (!set.group.empty()) check_group(set.group, c.geometry, check);
-            const std::vector<std::string> edges{"left", "right", "bottom", "top", "back", "front"};
-            if (std::find(edges.begin(), edges.end(), set.name) != edges.end())
-              check.fail("", fmt::format("\"{}\" is the name of an edge; expected another name than {}",
-                                         set.name, listed(edges)));
-            if (set.shape) check_shape(*set.shape, c, check);
           }};
 }
 
@@ -342,7 +286,7 @@ Format describe(OutputInput& output, const Case& c) {
 
 Format describe(ProbeInput& p, const Case& c) {
   const auto kinds = [&p](std::vector<std::string> among) { return When{"kind", &p.kind, std::move(among)}; };
-  std::vector<std::string> all{"reaction", "nominal-stress", "displacement", "stretch"};
+  std::vector<std::string> all{"reaction", "nominal-stress", "displacement", "stretch", "strain", "largest"};
   all.insert(all.end(), crack_probe_kinds().begin(), crack_probe_kinds().end());
   std::vector<Key> keys = {
       Key{"name", Text{&p.name}, "Its name in the history and in metrics."}.required(),
@@ -361,11 +305,18 @@ Format describe(ProbeInput& p, const Case& c) {
           .applies(kinds({"displacement"}))
           .required(),
       Key{"from", Place{&p.from}, "One of two places in the undeformed body."}
-          .applies(kinds({"stretch"}))
+          .applies(kinds({"stretch", "strain"}))
           .required(),
-      Key{"to", Place{&p.to}, "The other place; the probe is their distance over the undeformed one."}
-          .applies(kinds({"stretch"}))
-          .required()};
+      Key{"to", Place{&p.to},
+          "The other place; the probe is their distance over the undeformed one, as a strain less 1."}
+          .applies(kinds({"stretch", "strain"}))
+          .required(),
+      Key{"of", Text{&p.of},
+          "The metric, of a probe above, whose largest value over the rows of the history is kept."}
+          .applies(kinds({"largest"}))
+          .required(),
+      Key{"gives", Text{&p.gives}, "Instead of that largest value, what this metric, stretch or time was there."}
+          .applies(kinds({"largest"}))};
   for (Key& key : crack_probe_keys(p)) keys.push_back(std::move(key));
   return {.doc = "A number that is followed through the run.",
           .at = &p.at,
@@ -521,7 +472,9 @@ Format describe(Case& c) {
                "Expected results."},
            Key{"short",
                Table{[&c] { return describe(c.short_run, c); }, [&c] { return c.short_run.has_value(); }},
-               "The short variant."}},
+               "The short variant."},
+           Key{"study", Table{[&c] { return describe(c.study); }, [&c] { return c.study.has_value(); }},
+               "The study."}},
       .finish = [&c](const Check& check) { check_failure(c, check); }};
 }
 

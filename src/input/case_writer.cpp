@@ -146,8 +146,8 @@ class CaseWriter {
         write_section(fmt::format("[[{}]]", path), tables->open(i), path);
     if (const auto* named = std::get_if<kind::NamedTables>(&key.kind))
       for (std::size_t i = 0; i < named->count(); ++i) {
-        const std::string header = fmt::format("[{}.{}]", path, toml_key(named->name(i)));
-        write_section(header, named->open(i), path);
+        const std::string here = fmt::format("{}.{}", path, toml_key(named->name(i)));
+        write_section(fmt::format("[{}]", here), named->open(i), here);
       }
   }
 

@@ -25,57 +25,6 @@ std::size_t finite_directions(const Box& box) {
   return count;
 }
 
-Format describe_round(std::optional<Shape>& shape, bool ball) {
-  struct Form {
-    Point center{};
-    double radius = 0;
-  };
-  const auto form = std::make_shared<Form>();
-  if (shape && std::holds_alternative<Disc>(*shape))
-    *form = {std::get<Disc>(*shape).center, std::get<Disc>(*shape).radius};
-  if (shape && std::holds_alternative<Ball>(*shape))
-    *form = {std::get<Ball>(*shape).center, std::get<Ball>(*shape).radius};
-  return {
-      .doc = ball ? "A ball." : "A circle; in three dimensions the endless cylinder over it along z.",
-      .keys = {Key{"center", Place{&form->center}, "Its centre; the origin unless given."},
-               Key{"radius", Quantity{&form->radius, dimension::length, positive}, "Its radius."}.required()},
-      .finish = [form, &shape, ball](const Check&) {
-        if (ball)
-          shape = Ball{form->center, form->radius};
-        else
-          shape = Disc{form->center, form->radius};
-      }};
-}
-
-Format describe_box(std::optional<Shape>& shape) {
-  struct Form {
-    Point size;
-    std::optional<Point> center, from;
-  };
-  constexpr double endless = std::numeric_limits<double>::infinity();
-  const auto form = std::make_shared<Form>(Form{{endless, endless, endless}, {}, {}});
-  if (shape && std::holds_alternative<Box>(*shape)) {
-    const Box& box = std::get<Box>(*shape);
-    form->center = box.center;
-    for (std::size_t i = 0; i < 3; ++i)
-      if (box.half_size[i] > 0) form->size[i] = 2 * box.half_size[i];  // a shape not read yet has none
-  }
-  return {.doc = "A rectangle or box parallel to the axes.",
-          .keys = {Key{"size", Place{&form->size, positive}, "Its edges along the axes."}.required(),
-                   Key{"center", Place{&form->center}, "Its centre; the origin unless given."},
-                   Key{"from", Place{&form->from}, "Its lower corner, instead of its centre."}},
-          .groups = {{{"center", "from"}, false}},
-          .finish = [form, &shape](const Check&) {
-            Box box{form->center.value_or(Point{}), {}};
-            for (std::size_t i = 0; i < 3; ++i) {
-              box.half_size[i] = form->size[i] / 2;
-              if (form->from && std::isfinite(form->size[i]))
-                box.center[i] = (*form->from)[i] + box.half_size[i];
-            }
-            shape = box;
-          }};
-}
-
 template <class Wanted>
 std::function<bool()> holds(const std::optional<Shape>& shape) {
   return [&shape] { return shape && std::holds_alternative<Wanted>(*shape); };
@@ -203,6 +152,62 @@ Format describe_lattice_disc(GeometryInput& geometry) {
 }
 
 }  // namespace
+
+Format describe_round(std::optional<Shape>& shape, bool ball) {
+  struct Form {
+    Point center{};
+    double radius = 0;
+  };
+  const auto form = std::make_shared<Form>();
+  if (shape && std::holds_alternative<Disc>(*shape))
+    *form = {std::get<Disc>(*shape).center, std::get<Disc>(*shape).radius};
+  if (shape && std::holds_alternative<Ball>(*shape))
+    *form = {std::get<Ball>(*shape).center, std::get<Ball>(*shape).radius};
+  return {
+      .doc = ball ? "A ball." : "A circle; in three dimensions the endless cylinder over it along z.",
+      .keys = {Key{"center", Place{&form->center}, "Its centre; the origin unless given."},
+               Key{"radius", Quantity{&form->radius, dimension::length, positive}, "Its radius."}.required()},
+      .finish = [form, &shape, ball](const Check&) {
+        if (ball)
+          shape = Ball{form->center, form->radius};
+        else
+          shape = Disc{form->center, form->radius};
+      }};
+}
+
+Format describe_box(std::optional<Shape>& shape) {
+  struct Form {
+    Point size;
+    std::optional<Point> center, from;
+  };
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  const auto form = std::make_shared<Form>(Form{{endless, endless, endless}, {}, {}});
+  if (shape && std::holds_alternative<Box>(*shape)) {
+    const Box& box = std::get<Box>(*shape);
+    form->center = box.center;
+    for (std::size_t i = 0; i < 3; ++i)
+      if (box.half_size[i] > 0) form->size[i] = 2 * box.half_size[i];  // a shape not read yet has none
+  }
+  return {.doc = "A rectangle or box parallel to the axes.",
+          .keys = {Key{"size", Place{&form->size, positive}, "Its edges along the axes."}.required(),
+                   Key{"center", Place{&form->center}, "Its centre; the origin unless given."},
+                   Key{"from", Place{&form->from}, "Its lower corner, instead of its centre."}},
+          .groups = {{{"center", "from"}, false}},
+          .finish = [form, &shape](const Check&) {
+            Box box{form->center.value_or(Point{}), {}};
+            for (std::size_t i = 0; i < 3; ++i) {
+              box.half_size[i] = form->size[i] / 2;
+              if (form->from && std::isfinite(form->size[i]))
+                box.center[i] = (*form->from)[i] + box.half_size[i];
+            }
+            shape = box;
+          }};
+}
+
+void check_shape(const Shape& shape, const Case& c, const Check& check) {
+  if (std::holds_alternative<Ball>(shape) && c.geometry.dimension != 3)
+    check.fail("ball", "belongs to bodies in three dimensions; expected disc or box");
+}
 
 std::vector<Key> shape_keys(std::optional<Shape>& shape) {
   return {

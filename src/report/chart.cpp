@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "report/axes.hpp"
 
@@ -75,6 +76,22 @@ void draw_series(Canvas& canvas, const Axes& axes, const Series& series, const S
   draw();
 }
 
+/// Numbers of the styles of all series, and which series are the first of theirs.
+struct Styles {
+  std::vector<std::size_t> number, first;
+
+  explicit Styles(const std::vector<Series>& all) {
+    std::map<std::size_t, std::size_t> style_of_group;
+    for (std::size_t n = 0; n < all.size(); ++n) {
+      const auto known = all[n].group ? style_of_group.find(*all[n].group) : style_of_group.end();
+      number.push_back(known != style_of_group.end() ? known->second : first.size());
+      if (known != style_of_group.end()) continue;
+      if (all[n].group) style_of_group[*all[n].group] = first.size();
+      first.push_back(n);
+    }
+  }
+};
+
 constexpr double kSample = 34, kLegendGap = 8, kLine = 1.6 * kTextHeight;  // of the legend (canvas units)
 
 /// Names of the series below the axes, in as many columns as fit.
@@ -83,20 +100,21 @@ struct Legend {
   std::size_t columns = 1;
   double column_width = 0;  // px
 
-  Legend(Canvas& canvas, const Chart& chart, double width) {
-    if (chart.series.size() < 2) return;
+  Legend(Canvas& canvas, const Chart& chart, const Styles& styles, double width) {
+    const std::size_t count = styles.first.size();
+    if (count < 2) return;
     const double u = canvas.unit();
-    for (const Series& series : chart.series)
-      column_width = std::max(column_width, canvas.text_width(series.name, kTextHeight * u));
+    for (const std::size_t n : styles.first)
+      column_width = std::max(column_width, canvas.text_width(chart.series[n].name, kTextHeight * u));
     column_width = std::min(width, column_width + (kSample + 3 * kLegendGap) * u);
     columns = std::max<std::size_t>(1, static_cast<std::size_t>(width / column_width));
     constexpr std::size_t kMostRows = 8;
-    for (const Series& series : chart.series) {
-      if (texts.size() + 1 == kMostRows * columns && chart.series.size() > texts.size() + 1) {
-        texts.push_back(fmt::format("… and {} more", chart.series.size() - texts.size()));
+    for (const std::size_t n : styles.first) {
+      if (texts.size() + 1 == kMostRows * columns && count > texts.size() + 1) {
+        texts.push_back(fmt::format("… and {} more", count - texts.size()));
         break;
       }
-      texts.push_back(series.name);
+      texts.push_back(chart.series[n].name);
     }
   }
 
@@ -126,7 +144,8 @@ std::string draw_chart(const Chart& chart, PictureSize size, const std::filesyst
   Canvas canvas(size, unit_of(size), path);
   const double u = canvas.unit(), padding = kPadding * u;
   const Direction x = direction(chart, chart.x, &Series::x), y = direction(chart, chart.y, &Series::y);
-  const Legend legend(canvas, chart, size.width - 2 * padding);
+  const Styles styles(chart.series);
+  const Legend legend(canvas, chart, styles, size.width - 2 * padding);
   Axes axes{.corner = {0, title_room(canvas, false)}, .x = x.range, .y = y.range};
   axes.height = size.height - axes.corner.y - room_below(canvas) - padding - legend.height(u);
   axes.corner.x = padding + room_left(canvas, axes.y, axes.height);
@@ -138,7 +157,7 @@ std::string draw_chart(const Chart& chart, PictureSize size, const std::filesyst
   draw_title(canvas, chart.title, "");
   canvas.show_only(axes.corner, axes.width, axes.height);
   for (std::size_t n = 0; n < chart.series.size(); ++n)
-    draw_series(canvas, axes, chart.series[n], style_of(n, u), {x.in.factor, y.in.factor});
+    draw_series(canvas, axes, chart.series[n], style_of(styles.number[n], u), {x.in.factor, y.in.factor});
   canvas.show_all();
   legend.draw(canvas, {padding, axes.corner.y + axes.height + room_below(canvas)});
   return canvas.finish();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct ChartAxis {
 struct Series {
   std::string name;  // in the legend
   std::vector<double> x, y;
+  std::optional<std::size_t> group{};  // series of one group look the same and share the first one's name
 };
 
 struct Chart {

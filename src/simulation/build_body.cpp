@@ -6,6 +6,7 @@
 
 #include "body/lattice_body.hpp"
 #include "body/listed_body.hpp"
+#include "input/set_format.hpp"
 #include "simulation/build_parts.hpp"
 
 namespace riven {
@@ -156,11 +157,16 @@ PointSet make_set(const SetInput& in, const Case& of, const Body& body) {
   PointSet set{in.name, {}};
   const double touch = 1e-9 * body.spacing;
   const std::vector<std::size_t>* group = in.group.empty() ? nullptr : &group_points(in.group, of);
+  const std::vector<TurnedShape> shapes = shapes_of(in);
+  const auto in_a_shape = [&](const Point& x) {
+    return std::any_of(shapes.begin(), shapes.end(),
+                       [&](const TurnedShape& shape) { return signed_distance(shape, x) <= touch; });
+  };
   for (std::size_t n = 0; n < body.points.size(); ++n) {
     const Point x = body.position(body.points[n]);
     const bool inside = group != nullptr ? std::binary_search(group->begin(), group->end(), body.points[n])
                         : in.where       ? (*in.where)(Variables{.position = x}) != 0
-                                         : signed_distance(*in.shape, x) <= touch;
+                                         : in_a_shape(x);
     if (inside) set.points.push_back(n);
   }
   if (set.points.empty())

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/nearest_name.hpp"
 #include "verification/interpolate.hpp"
 
 namespace riven {
@@ -96,9 +97,35 @@ void Probes::add_columns(const ProbeInput& probe) {
     for (const char* component : {"_xx", "_xy", "_yx", "_yy"})
       columns_.push_back({probe.name + component, "Pa"});
   if (probe.kind == "displacement") vector("displacement_" + probe.name, "m");
-  if (probe.kind == "stretch") columns_.push_back({probe.name, ""});
+  if (probe.kind == "stretch" || probe.kind == "strain") columns_.push_back({probe.name, ""});
+  if (probe.kind == "largest") add_largest(probe);
   if (CrackProbes::is_one(probe))
     for (HistoryColumn& column : CrackProbes::columns(probe)) columns_.push_back(std::move(column));
+}
+
+void Probes::add_largest(const ProbeInput& probe) {
+  std::vector<std::string> names;
+  for (const HistoryColumn& column : columns_) names.push_back(column.name);
+  const auto find = [&](const char* key, const std::string& name, const std::vector<std::string>& among) {
+    const auto found = std::find(among.begin(), among.end(), name);
+    if (found == among.end())
+      throw InputError(
+          probe.at, fmt::format("probe {}: {}: no probe above gives \"{}\"; known are {}{}", probe.name, key,
+                                name, among.empty() ? "none" : listed(among), did_you_mean(name, among)));
+    return static_cast<std::size_t>(found - among.begin());
+  };
+  const std::size_t of = find("of", probe.of, names);
+  LargestColumn largest{.column = columns_.size(), .of = of, .gives = of};
+  std::string unit = columns_[of].unit;
+  if (!probe.gives.empty()) {
+    names.emplace_back(name(simulation_.parameter));
+    const std::size_t gives = find("gives", probe.gives, names);
+    const bool is_column = gives < columns_.size();
+    largest.gives = is_column ? std::optional(gives) : std::nullopt;
+    unit = is_column ? columns_[gives].unit : std::string(riven::unit(simulation_.parameter));
+  }
+  columns_.push_back({probe.name, unit});
+  largest_.add(largest);
 }
 
 std::vector<double> Probes::evaluate(const State& state, const Constraints& constraints) {
@@ -106,8 +133,7 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
   cracks_.look(state.parameter);
   std::optional<DisplacementField> field;
   for (const ProbeInput& probe : simulation_.input.probes)
-    if (!field && (probe.kind == "displacement" || probe.kind == "stretch"))
-      field.emplace(simulation_, state.u);
+    if (!field && (probe.position || probe.from)) field.emplace(simulation_, state.u);
   std::vector<double> values;
   for (std::size_t n = 0; n < simulation_.input.probes.size(); ++n) {
     const ProbeInput& probe = simulation_.input.probes[n];
@@ -127,15 +153,18 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
       values.insert(values.end(), {stress[0], stress[1], stress[3], stress[4]});
     }
     if (probe.kind == "displacement") add(field->at(*probe.position, probe), 1);
-    if (probe.kind == "stretch")
+    if (probe.from)
       values.push_back(distance_between(moved(*probe.from, field->at(*probe.from, probe)),
                                         moved(*probe.to, field->at(*probe.to, probe))) /
-                       distance_between(*probe.from, *probe.to));
+                            distance_between(*probe.from, *probe.to) -
+                        (probe.kind == "strain" ? 1 : 0));
+    if (probe.kind == "largest") values.push_back(0);  // filled in when all others are known
     if (CrackProbes::is_one(probe)) {
       const std::vector<double> of_cracks = cracks_.values(n);
       values.insert(values.end(), of_cracks.begin(), of_cracks.end());
     }
   }
+  largest_.look_at(state.parameter, values);
   return values;
 }
 

@@ -59,7 +59,7 @@ std::map<std::string, std::string> decisive_values(const Case& input) {
   std::erase_if(values, [](const auto& item) {
     const std::string& key = item.first;
     return key == "title" || key == "source" || key == "output.checkpoint_every" ||
-           key.starts_with("expect.") || key.starts_with("short.");
+           key.starts_with("expect.") || key.starts_with("short.") || key.starts_with("study.");
   });
   for (const TableInput& table : input.tables)
     values["table." + table.name + ".file"] = fingerprint(table.function->file());

@@ -14,6 +14,25 @@ from program import HOLE, MOVING, PROGRAM, ProgramTest, fields, history, replace
 RELAXED = replaced(HOLE, "points = [20, 20]", "points = [14, 14]")
 MARCHED = replaced(replaced(MOVING, "points = [20, 20]", "points = [12, 12]"), '"4 ms"', '"21 ms"')
 MARCHED += '\n[[initial]]\nvelocity = ["2 m/s * sin(30 rad/m * y)", 0]\n'
+# What a run keeps from row to row is part of where it goes on.
+MARCHED += """
+[[probe]]
+name = "swing"
+kind = "displacement"
+at = [0, "50 mm"]
+component = "x"
+
+[[probe]]
+name = "most"
+kind = "largest"
+of = "swing"
+
+[[probe]]
+name = "when"
+kind = "largest"
+of = "swing"
+gives = "time"
+"""
 # About a second, so that it can be interrupted on its way.
 SLOW = replaced(replaced(HOLE, "points = [20, 20]", "points = [40, 40]"), "stretch = [1.2, 1.4]",
                 "stretch = [1.001, 1.5]\nincrement = 0.03")

@@ -5,6 +5,7 @@ import json
 import pathlib
 import re
 import signal
+import statistics
 import subprocess
 import time
 import unittest
@@ -97,7 +98,7 @@ class Sweep(SweepTest):
                 (good, "--force", "--resume"): "--resume",
                 (good, "-j", "0"): "--jobs",
                 (good, "--resume"): "results/sheet-sweep: is not a sweep of Riven (it has no sweep.toml)",
-                (): "keys is required",
+                (): "sheet.toml: has no [study], which says what to sweep; expected KEY=a,b,c",
                 ("a=" + ",".join(map(str, range(200))), "b=" + ",".join(map(str, range(200)))): "more than 10000 variants"}.items():
             with self.subTest(" ".join(words)):
                 self.assertIn(message, self.refused("sweep", case, *words))
@@ -128,6 +129,93 @@ class Sweep(SweepTest):
         self.assertIn("holds another sweep (was checksum = ", self.refused(*words, "--resume"))
 
 
+# Discs that a seed puts somewhere; what their points feel differs, what the edge feels does not.
+STUDY = SMALL + """
+[set.discs]
+random_discs = { number = 2, radius = "15 mm" }
+
+[[probe]]
+name = "inside"
+kind = "nominal-stress"
+on = "discs"
+
+[[probe]]
+name = "most"
+kind = "largest"
+of = "inside_xx"
+
+[[probe]]
+name = "hole_then"
+kind = "largest"
+of = "inside_xx"
+gives = "hole_x"
+
+[study]
+keys = ["set.discs.random_discs.number, set.discs.random_discs.radius = (2, 15 mm), (4, 12 mm)",
+        "set.discs.random_discs.seed = 1, 2, 3"]
+plots = ["hole_x, inside_xx", "radius, most"]
+"""
+
+
+class Study(SweepTest):
+    def test_the_case_says_what_to_run(self):
+        case = self.write("sheet.toml", STUDY)
+        done = self.command("sweep", case, "--set", "solver.stretch=[1.1,1.2]")
+        folder = "results/sheet-sweep"
+        rows = self.rows(folder)
+        number, radius, seed = (f"set.discs.random_discs.{key}" for key in ("number", "radius", "seed"))
+        self.assertEqual([(row[number], row[radius], row[seed]) for row in rows],
+                         [("2", "15 mm", s) for s in "123"] + [("4", "12 mm", s) for s in "123"])
+        self.assertEqual([row["folder"] for row in rows][:2], ["number=2,radius=15_mm,seed=1", "number=2,radius=15_mm,seed=2"])
+        self.assertEqual([float(row[radius + "_si [m]"]) for row in rows], 3 * [0.015] + 3 * [0.012])
+        self.assertEqual(len({row["inside_xx [Pa]"] for row in rows}), 6, "each has its own discs")
+        self.assert_means(folder, rows)
+        for picture in ("sweep.png", "sweep-2.png"):
+            self.assertTrue((self.top / folder / picture).read_bytes().startswith(b"\x89PNG"), picture)
+        self.assertRegex(done.stdout, r"(?m)^number +radius +seed +status ")
+        self.assertRegex(done.stdout, r"(?m)^2 +15 mm +3 .* ± ")
+        self.assertIn("(sweep.csv, sweep-means.csv, sweep.png, sweep-2.png)", done.stderr)
+
+    def assert_means(self, folder, rows):
+        with open(self.top / folder / "sweep-means.csv", newline="", encoding="utf-8") as file:
+            means = list(csv.DictReader(file))
+        self.assertEqual([(mean["set.discs.random_discs.number"], mean["runs"]) for mean in means], [("2", "3"), ("4", "3")])
+        for mean, group in zip(means, (rows[:3], rows[3:])):
+            values = [float(row["most [Pa]"]) for row in group]
+            # Rounding of a sum of three.
+            self.assertAlmostEqual(float(mean["most mean [Pa]"]) / statistics.mean(values), 1, delta=1e-12)
+            self.assertAlmostEqual(float(mean["most deviation [Pa]"]) / statistics.stdev(values), 1, delta=1e-6)
+
+    def test_words_come_before_the_study(self):
+        case = self.write("sheet.toml", STUDY)
+        self.command("sweep", case, "set.discs.random_discs.seed=1,2", "--plot", "stretch,hole_x", "-o", "out",
+                     "--set", "solver.stretch=[1.1]")
+        self.assertEqual(len(self.rows("out")), 2)
+        self.assertEqual([p.name for p in (self.top / "out").glob("*.png")], ["sweep.png"])
+        self.assertFalse((self.top / "out/sweep-means.csv").exists(), "seeds alone are what is looked at")
+        self.assertIn("holds another sweep", self.refused("sweep", case, "-o", "out", "--resume"))
+
+    def test_check_tells_what_it_is(self):
+        case = self.write("sheet.toml", STUDY)
+        said = self.command("check", case).stdout
+        self.assertIn("# study: 6 variants over number, radius, seed", said)
+        self.assertRegex(said, r"(?m)^#   2 shapes: its points have [\d.]+ % of the body's volume, the shapes add up to [\d.]+ %$")
+        self.assertEqual(len(re.findall(r"(?m)^#   center \(\S+, \S+\) m$", said)), 2)
+        for old, new, message in (("seed = 1, 2, 3", "sed = 1, 2, 3", 'sed: unknown key'),
+                                  ("(4, 12 mm)", "(4)", "study.keys: set.discs.random_discs.number, set.discs.random_discs.radius = "
+                                   "(2, 15 mm), (4): (4) has 1 value; expected 2"),
+                                  ("(4, 12 mm)", "(40, 15 mm)", "variant number=40, radius=15 mm, seed=1: --set "
+                                   "set.discs.random_discs.number: no room for 40 discs of radius 0.015 m"),
+                                  ("radius, most", "radius, mst", '"mst" is neither a column of the history'),
+                                  ("radius, most", "radius", "--plot radius: expected two names"),
+                                  ("radius, most", "radios, most", '"radios" is neither a column of the history nor a swept key')):
+            with self.subTest(new):
+                wrong = self.write("wrong.toml", replaced(STUDY, old, new))
+                self.assertIn(message, self.refused("check", wrong))
+                self.assertIn(message, self.refused("sweep", wrong))
+                self.assertFalse((self.top / "results/wrong-sweep").exists())
+
+
 class Stopped(SweepTest):
     def stopped(self, number, words):
         """Starts a sweep, sends it a signal when its second run has a state; returns exit code and messages."""
@@ -156,7 +244,7 @@ class Stopped(SweepTest):
         return done
 
     def test_interrupt(self):
-        code, said = self.stopped(signal.SIGINT, [*self.words, "-o", "out"])
+        code, said = self.stopped(signal.SIGINT, [*self.words, "-o", "out", "-j", 1])
         self.assertEqual(code, 130)
         self.assertEqual([row["status"] for row in self.rows("out")], ["finished", "interrupted", "not started"])
         self.assertIn("warning: interrupted. To go on: riven sweep ", said)
@@ -168,7 +256,7 @@ class Stopped(SweepTest):
         self.assertEqual(first.stat().st_mtime_ns, written, "what is finished is kept")
 
     def test_kill(self):
-        code, _ = self.stopped(signal.SIGKILL, [*self.words, "-o", "out"])
+        code, _ = self.stopped(signal.SIGKILL, [*self.words, "-o", "out", "-j", 1])
         self.assertEqual(code, -signal.SIGKILL)
         self.assertFalse((self.top / "out/sweep.csv").exists())
         self.assert_goes_on()
