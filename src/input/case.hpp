@@ -154,6 +154,32 @@ struct SolverInput {   // [solver]
   Location at;
 };
 
+struct ContactInput {    // [contact]: points without a bond repel
+  double distance = 0;   // m
+  double stiffness = 1;  // times what follows from the bonds
+  Location at;
+};
+
+struct SphereInput {
+  Point center{};
+  double radius = 0;  // m
+};
+
+struct PlaneInput {
+  Point point{};
+  std::vector<double> normal;  // out of the impactor, of any length
+};
+
+struct ImpactorInput {  // [[impactor]]: rigid, a sphere or a plane
+  std::string name;
+  std::optional<SphereInput> sphere;
+  std::optional<PlaneInput> plane;
+  std::optional<double> mass;            // kg: free; without, the velocity is prescribed
+  std::vector<ComponentInput> velocity;  // one per dimension, or none: at rest
+  double stiffness = 1;                  // times what follows from the bonds
+  Location at;
+};
+
 /// How often a run writes a checkpoint: never if both are 0.
 struct CheckpointInterval {
   double seconds = 0;  // of wall time
@@ -170,10 +196,11 @@ struct OutputInput {                    // [output]
 
 struct ProbeInput {  // [[probe]]
   std::string name;
-  std::string kind;  // "reaction", "nominal-stress", "displacement", "stretch"
+  std::string kind;  // "reaction", "nominal-stress", "displacement", "stretch", "impactor"
   std::string
       component;  // reaction, displacement: only this one of "x", "y", "z", under the probe's own name
   Named on;       // reaction, nominal-stress: an edge or a set
+  std::string impactor;           // impactor: its name
   std::optional<Point> position;  // displacement: a place in the undeformed body (m)
   std::optional<Point> from, to;  // stretch: deformed over undeformed distance of two places
   Location at;
@@ -221,6 +248,8 @@ struct Case {
   std::vector<MaterialInput> materials;
   std::vector<LoadInput> loads;
   std::vector<InitialInput> initials;
+  std::optional<ContactInput> contact;
+  std::vector<ImpactorInput> impactors;
   SolverInput solver;
   OutputInput output;
   std::vector<ProbeInput> probes;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/nearest_name.hpp"
+#include "input/contact_format.hpp"
 #include "input/field_format.hpp"
 #include "input/format.hpp"
 #include "input/model_format.hpp"
@@ -307,7 +308,7 @@ Format describe(ProbeInput& p, const Case& c) {
   return {.doc = "A number that is followed through the run.",
           .at = &p.at,
           .keys = {Key{"name", Text{&p.name}, "Its name in the history and in metrics."}.required(),
-                   Key{"kind", Text{&p.kind, {"reaction", "nominal-stress", "displacement", "stretch"}},
+                   Key{"kind", Text{&p.kind, {"reaction", "nominal-stress", "displacement", "stretch", "impactor"}},
                        "What it measures."}
                        .required(),
                    Key{"on", Part{&p.on},
@@ -328,9 +329,15 @@ Format describe(ProbeInput& p, const Case& c) {
                    Key{"to", Place{&p.to},
                        "The other place; the probe is their distance over the undeformed one."}
                        .applies(kinds({"stretch"}))
+                       .required(),
+                   Key{"impactor", Text{&p.impactor},
+                       "The impactor whose position, velocity and force, that of the body on it, are followed: "
+                       "name_position_x and so on."}
+                       .applies(kinds({"impactor"}))
                        .required()},
           .finish = [&p, &c](const Check& check) {
             check_new_name(c.probes, p, check);
+            if (p.kind == "impactor") check_impactor(p.impactor, c, check);
             if (p.from && p.from == p.to) check.fail("to", "is the same place as from; expected two places");
           }};
 }
@@ -475,6 +482,14 @@ Format describe(Case& c) {
            Key{"initial", tables(c.initials, [&c](InitialInput& i, std::size_t) { return describe(i, c); }),
                "Initial conditions. Relaxation starts undeformed, since its states do not depend on where "
                "it starts."}
+               .applies(method(c, verlet)),
+           Key{"contact",
+               Table{[&c] { return describe(c.contact, c); }, [&c] { return c.contact.has_value(); }},
+               "Contact of the body with itself."}
+               .applies(method(c, verlet)),
+           Key{"impactor",
+               tables(c.impactors, [&c](ImpactorInput& i, std::size_t) { return describe(i, c); }),
+               "Rigid impactors."}
                .applies(method(c, verlet)),
            Key{"output", Table{[&c] { return describe(c.output, c); }, always}, "The output."}.otherwise(
                "{}"),

@@ -8,9 +8,9 @@
 
 namespace riven {
 
-/// What a contact is made of where the case only says how many times as stiff it is to be: a quarter of the
-/// bound of a whole family's rows, which is what bonds pull that a point on a face lacks. Contact then adds
-/// to such a point no more than it would have inside of the body, and steps stay as long as they are.
+/// Stiffness of contacts, unless another one is wanted: that of a point's contact is a quarter of the largest
+/// row bound of the model, about what the bonds pull that a point on a face lacks. So a face in contact is
+/// about as stiff as the body inside, and steps stay about as long.
 struct ContactStiffness {
   double per_volume = 0;  // kappa (N/m^4)
   double per_pair = 0;    // k (N/m^7)

@@ -97,6 +97,11 @@ void Probes::add_columns(const ProbeInput& probe) {
       columns_.push_back({probe.name + component, "Pa"});
   if (probe.kind == "displacement") vector("displacement_" + probe.name, "m");
   if (probe.kind == "stretch") columns_.push_back({probe.name, ""});
+  if (probe.kind == "impactor") {
+    vector(probe.name + "_position", "m");
+    vector(probe.name + "_velocity", "m/s");
+    vector(probe.name + "_force", "N");
+  }
 }
 
 std::vector<double> Probes::evaluate(const State& state, const Constraints& constraints) const {
@@ -125,8 +130,28 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
       values.push_back(distance_between(moved(*probe.from, field->at(*probe.from, probe)),
                                         moved(*probe.to, field->at(*probe.to, probe))) /
                        distance_between(*probe.from, *probe.to));
+    if (probe.kind == "impactor")
+      for (const Point& vector : impactor_of(probe, state)) add(vector, 1);
   }
   return values;
+}
+
+/// Position (m) and velocity (m/s) of an impactor, and the force (N) of the body on it.
+std::array<Point, 3> Probes::impactor_of(const ProbeInput& probe, const State& state) const {
+  const std::vector<ImpactorInput>& inputs = simulation_.input.impactors;
+  const auto found = std::find_if(inputs.begin(), inputs.end(),
+                                  [&](const ImpactorInput& in) { return in.name == probe.impactor; });
+  const auto n = static_cast<std::size_t>(found - inputs.begin());
+  const ContactModel& contact = *simulation_.contact;
+  const Point start = contact.impactors()[n].start();
+  Point velocity{};
+  for (std::size_t axis = 0; axis < found->velocity.size(); ++axis)
+    velocity[axis] = (*found->velocity[axis].value)(Variables{.position = start, .t = state.parameter});
+  // A free one has its velocity in the state, which a prescribed one is not a part of.
+  if (found->mass)
+    std::copy_n(state.v.begin() + static_cast<std::ptrdiff_t>(contact.impactor_entry(n)),
+                simulation_.body->dimension, velocity.begin());
+  return {moved(start, contact.moved(n, state.u)), velocity, contact.force_on_impactor(n, state.u)};
 }
 
 /// External force on the points of a set, whichever load holds them.
