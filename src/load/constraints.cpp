@@ -7,11 +7,17 @@ namespace riven {
 
 namespace {
 
-double offset(const Constraint& constraint, double parameter) {
+/// Sum of the terms that are displacements, or of those that are rates.
+double sum_of(const Constraint& constraint, bool rates, double parameter) {
   double sum = 0;
   for (const PrescribedTerm& term : constraint.terms)
-    sum += term.factor * term.displacement(term.position, parameter);
+    if (term.rate == rates) sum += term.factor * term.displacement(term.position, parameter);
   return sum;
+}
+
+double travel(const Constraint& constraint, double from, double to) {
+  const auto rate = [&](double t) { return sum_of(constraint, true, t); };
+  return (to - from) / 6 * (rate(from) + 4 * rate(0.5 * (from + to)) + rate(to));
 }
 
 }  // namespace
@@ -22,12 +28,18 @@ void Constraints::add(Constraint constraint) {
   (constraint.master == Constraint::kNone ? prescribed_ : mirrored_).push_back(std::move(constraint));
   offset_.push_back(0.0);
   external_.push_back(0.0);
+  travelled_.push_back(0.0);
 }
 
 void Constraints::set_parameter(double parameter) {
   std::size_t n = 0;
   for (const auto* list : {&prescribed_, &mirrored_})
-    for (const Constraint& constraint : *list) offset_[n++] = offset(constraint, parameter);
+    for (const Constraint& constraint : *list) {
+      travelled_[n] = parameter == 0 ? 0 : travelled_[n] + travel(constraint, parameter_, parameter);
+      offset_[n] = travelled_[n] + sum_of(constraint, false, parameter);
+      ++n;
+    }
+  parameter_ = parameter;
 }
 
 void Constraints::apply(std::span<double> u) const {

@@ -20,11 +20,12 @@ using LoadFunction = std::function<double(const Point& position, double paramete
 
 /// One prescribed displacement component that enters a constraint, `factor` times.
 struct PrescribedTerm {
-  LoadFunction displacement;  // m
+  LoadFunction displacement;  // m, or its rate (m/s)
   Point position{};           // where it is taken
   int axis = 0;
   double factor = 1;
   std::size_t load = 0;  // number of the load; its reaction collects this constraint's force
+  bool rate = false;     // the displacement is the integral of a velocity from time 0
 };
 
 /// u[slave] = sign * u[master] + sum of factor * displacement. Without master: a prescribed entry. Ghost
@@ -53,8 +54,10 @@ class Constraints {
   /// A slave is no master of another one, but a prescribed entry may be a master.
   void add(Constraint constraint);
 
-  /// Evaluates the prescribed displacements; `apply` then uses them.
+  /// Evaluates the prescribed displacements; `apply` then uses them. Velocities are integrated from the
+  /// parameter before, by Simpson's rule; at parameter 0 they have moved nothing.
   void set_parameter(double parameter);
+  [[nodiscard]] double parameter() const { return parameter_; }
   /// Makes a state obey the constraints.
   void apply(std::span<double> u) const;
   /// Takes the internal force out of the slaves: adds it to their masters where the chain rule holds, keeps
@@ -94,6 +97,8 @@ class Constraints {
   template <class Self, class Each>
   static void each_member(Self& self, const Each& each) {
     each("constraints.offset", self.offset_);
+    each("constraints.parameter", self.parameter_);
+    each("constraints.travelled", self.travelled_);
     each("constraints.external", self.external_);
     each("constraints.reaction_norm", self.reaction_norm_);
     for (std::size_t n = 0; n < self.reaction_.size(); ++n)
@@ -104,6 +109,8 @@ class Constraints {
   std::vector<Constraint> mirrored_;
   std::unordered_map<std::size_t, std::size_t> prescribed_at_;  // number in prescribed_ by its slave
   std::vector<bool> free_;
+  double parameter_ = 0;
+  std::vector<double> travelled_;          // by velocities, in the same order (m)
   std::vector<double> offset_, external_;  // of prescribed_, then mirrored_
   std::vector<Point> reaction_;
   double reaction_norm_ = 0;

@@ -22,7 +22,7 @@ DynamicRelaxation::DynamicRelaxation(Model& model, Constraints& constraints, con
     : constraints_(constraints),
       tolerance_(settings.tolerance),
       max_iterations_(settings.max_iterations),
-      forces_(model, constraints),
+      forces_(model, constraints, settings.external),
       stall_(std::max(kPatience, settings.max_iterations / 4)),
       velocity_(model.dofs(), 0.0) {}
 

@@ -17,9 +17,10 @@ constexpr double kLeastStrain = 1e-6;
 
 }  // namespace
 
-FreeForces::FreeForces(Model& model, Constraints& constraints)
+FreeForces::FreeForces(Model& model, Constraints& constraints, const ExternalForces& external)
     : model_(model),
       constraints_(constraints),
+      external_(external),
       watchdog_(model),
       force_(model.dofs(), 0.0),
       previous_(force_),
@@ -37,14 +38,24 @@ std::optional<std::string> FreeForces::evaluate(State& state) {
   std::swap(force_, previous_);
   if (const auto breakdown = model_.internal_force(state.u, force_))
     return text(watchdog_.inspect(constraints_, state.u, state.u).value_or(*breakdown));
+  add_external(state);
   constraints_.reduce(force_);
   return std::nullopt;
+}
+
+void FreeForces::add_external(const State& state) {
+  if (external_.empty()) return;
+  applied_.assign(force_.size(), 0.0);
+  for (const auto& external : external_) external->add(state.u, {}, constraints_.parameter(), applied_);
+  for (std::size_t i = 0; i < force_.size(); ++i) force_[i] += applied_[i];
+  external_norm_ =
+      std::sqrt(ordered_sum_of(applied_.size(), [&](std::size_t i) { return applied_[i] * applied_[i]; }));
 }
 
 double FreeForces::residual() const {
   const double force2 = ordered_sum_of(force_.size(), [&](std::size_t i) { return force_[i] * force_[i]; });
   if (force2 == 0) return 0;  // and where no bond is left no scale either
-  return std::sqrt(force2) / std::max(constraints_.reaction_norm(), least_reaction_);
+  return std::sqrt(force2) / std::max(constraints_.reaction_norm() + external_norm_, least_reaction_);
 }
 
 std::optional<std::string> FreeForces::alarm(const State& state) const {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "load/external_force.hpp"
 #include "solver/solver.hpp"
 #include "solver/watchdog.hpp"
 
@@ -13,7 +14,7 @@ namespace riven {
 /// The forces on the free entries of a state, and how far they are from balance.
 class FreeForces {
  public:
-  FreeForces(Model& model, Constraints& constraints);
+  FreeForces(Model& model, Constraints& constraints, const ExternalForces& external);
 
   /// Sets the scale of the residual anew where there is next to no reaction, from the tangent's row bounds.
   void rescale(const State& state);
@@ -25,7 +26,8 @@ class FreeForces {
   [[nodiscard]] std::span<const double> values() const { return force_; }
   /// Those of the evaluation before.
   [[nodiscard]] std::span<const double> previous() const { return previous_; }
-  /// L2 norm of the force over that of the constraint forces, those of strains of about 1e-6 at least.
+  /// L2 norm of the force over those of the constraint and the external forces, that of strains of about 1e-6
+  /// at least.
   [[nodiscard]] double residual() const;
   /// What ends a run whatever the solver.
   [[nodiscard]] std::optional<std::string> alarm(const State& state) const;
@@ -39,13 +41,18 @@ class FreeForces {
     each("forces.force", self.force_);
     each("forces.bound", self.bound_);
     each("forces.least_reaction", self.least_reaction_);
+    each("forces.external_norm", self.external_norm_);
   }
 
  private:
+  void add_external(const State& state);
+
   Model& model_;
   Constraints& constraints_;
+  ExternalForces external_;
   Watchdog watchdog_;
-  std::vector<double> force_, previous_, bound_;
+  std::vector<double> force_, previous_, bound_, applied_;
+  double external_norm_ = 0;   // N
   double least_reaction_ = 0;  // N
 };
 

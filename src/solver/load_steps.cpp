@@ -235,13 +235,20 @@ void LoadSteps::retreat(const std::string& failure) {
 /// Energies of the new state. Returns what the body lost, more than the loads took (J).
 double LoadSteps::balance() {
   EnergyBalance& energy = state_.energy;
-  const double before = energy.strain - energy.external_work;
+  const double before = energy.strain + energy.held - energy.external_work;
   energy.strain = model_.strain_energy(state_.u);
   if (!broken_) energy.external_work += work_.since_last_call(constraints_, next_);
+  energy.held = 0;
+  for (const auto& external : settings_.external) {
+    // Where bonds have broken the loads stand still, but they follow the body.
+    energy.external_work += broken_ ? external->work(overloaded_, next_, state_.u, next_)
+                                    : external->work(start_, state_.parameter, state_.u, next_);
+    energy.held += external->held(state_.u, next_);
+  }
   // Energies below that of the least strain are rounding, and so is their balance.
   energy.largest = std::max({energy.largest, std::abs(energy.strain), std::abs(energy.external_work),
                              method().forces().least_energy()});
-  const double lost = before - (energy.strain - energy.external_work);
+  const double lost = before - (energy.strain + energy.held - energy.external_work);
   if (broken_) energy.dissipated += lost;
   return lost;
 }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "load/external_force.hpp"
 #include "solver/equilibrium.hpp"
 #include "solver/work.hpp"
 
@@ -15,6 +16,7 @@ struct LoadStepSettings {
   double tolerance = 1e-5;  // L2 norm of the free force over that of the reaction; a reaction below that of
                             // strains of about 1e-6 counts as that
   long max_iterations = 20000;  // of relaxation in a load step; then it is cut
+  ExternalForces external;
 };
 
 /// Marches a model through states of equilibrium. A step starts from an affine predictor, later from the

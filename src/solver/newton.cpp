@@ -37,7 +37,10 @@ double dot(std::span<const double> a, std::span<const double> b) {
 }  // namespace
 
 Newton::Newton(Model& model, Constraints& constraints, const LoadStepSettings& settings)
-    : model_(model), constraints_(constraints), tolerance_(settings.tolerance), forces_(model, constraints) {}
+    : model_(model),
+      constraints_(constraints),
+      tolerance_(settings.tolerance),
+      forces_(model, constraints, settings.external) {}
 
 void Newton::begin(const State& state) {
   // The system's pattern is that of the bonds that exist, no matter which ones did before: a run that is

@@ -17,18 +17,21 @@ struct EnergyBalance {
   double kinetic = 0;
   double strain = 0;
   double dissipated = 0;
+  double damped = 0;         // by the solver's damping
+  double held = 0;           // by external forces, such as contacts
   double external_work = 0;  // of the loads, and what brought the body into the state it started from
   double largest = 0;        // largest of the above so far, the scale of the error
 
-  [[nodiscard]] double error() const {
-    return largest > 0 ? (kinetic + strain + dissipated - external_work) / largest : 0;
-  }
+  [[nodiscard]] double total() const { return kinetic + strain + dissipated + damped + held; }
+  [[nodiscard]] double error() const { return largest > 0 ? (total() - external_work) / largest : 0; }
 
   template <class Self, class Each>
   static void each_member(Self& self, const std::string& name, const Each& each) {
     each(name + ".kinetic", self.kinetic);
     each(name + ".strain", self.strain);
     each(name + ".dissipated", self.dissipated);
+    each(name + ".damped", self.damped);
+    each(name + ".held", self.held);
     each(name + ".external_work", self.external_work);
     each(name + ".largest", self.largest);
   }

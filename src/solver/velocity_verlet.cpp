@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "solver/dynamic_relaxation.hpp"
 #include "solver/watchdog.hpp"
 #include "solver/work.hpp"
 
@@ -77,10 +78,8 @@ class Verlet {
   }
 
   State run(const Snapshot* from) {
-    if (from != nullptr)
-      restore(*from);
-    else
-      begin();
+    if (from != nullptr) restore(*from);
+    if (from == nullptr || resting_) begin();
     while (unfinished()) {
       take_step();
       observer_.safe_point([this] { return save(); });
@@ -94,6 +93,7 @@ class Verlet {
     State::each_member(self.state_, "state", each);
     each("verlet.force", self.force_);
     each("verlet.step", self.step_);
+    each("verlet.resting", self.resting_);
     each("verlet.next_estimate", self.next_estimate_);
     each("verlet.rest_energy", self.rest_energy_);
     Leg::each_member(self.leg_, each);
@@ -118,6 +118,7 @@ class Verlet {
   [[nodiscard]] bool unfinished() const { return state_.parameter < settings_.until * (1 - 1e-12); }
 
   void begin() {
+    std::fill(state_.u.begin(), state_.u.end(), 0.0);
     rest_energy_ = model_.strain_energy(state_.u);
     if (!settings_.initial_u.empty()) state_.u = settings_.initial_u;
     if (!settings_.initial_v.empty()) state_.v = settings_.initial_v;
@@ -125,13 +126,41 @@ class Verlet {
       if (inverse_mass_[i] == 0) state_.v[i] = 0;
     constraints_.set_parameter(0);
     constraints_.apply(state_.u);
+    if (settings_.rest_tolerance) come_to_rest();
     evaluate();
+    if (settings_.rest_tolerance && model_.dissipated_energy() > 0)
+      throw SolverFailure(
+          "bonds would break under the loads of time 0 already, before the motion starts; try smaller loads "
+          "at time 0, or solver.start = \"initial\"");
     work_.begin(constraints_, 0);
     estimate_step();
     balance();
-    state_.energy.external_work = state_.energy.kinetic + state_.energy.strain + state_.energy.dissipated;
+    state_.energy.external_work = state_.energy.total();
     observer_.reached(state_, constraints_, true);
     plan();
+  }
+
+  /// Dynamic relaxation under the loads of time 0.
+  void come_to_rest() {
+    const LoadStepSettings settings{
+        .targets = {}, .tolerance = *settings_.rest_tolerance, .external = settings_.external};
+    DynamicRelaxation relaxation(model_, constraints_, settings);
+    relaxation.begin(state_);
+    resting_ = true;
+    for (long number = 0;; ++number) {
+      const Iteration iteration = relaxation.iterate(state_, number);
+      if (iteration.outcome == Iteration::Outcome::converged) break;
+      if (iteration.outcome == Iteration::Outcome::failed)
+        throw SolverFailure(fmt::format(
+            "the body finds no rest under the loads of time 0: {}. It may be free to move or to turn as a "
+            "whole; try a load that holds it, smaller loads at time 0, a larger solver.start_tolerance, or "
+            "solver.start = \"initial\"",
+            iteration.failure));
+      if (iteration.worth_telling) tell_progress();
+      observer_.safe_point([this] { return save(); });
+    }
+    resting_ = false;
+    std::fill(state_.v.begin(), state_.v.end(), 0.0);
   }
 
   /// Steps from here to the next time at which something is written.
@@ -154,12 +183,16 @@ class Verlet {
     if ((look || last) && unfinished()) plan();
   }
 
-  void look_around() {
+  void tell_progress() const {
     observer_.progressed({.parameter = state_.parameter,
                           .reached = state_.parameter,
                           .end = settings_.until,
                           .step = state_.steps,
                           .evaluations = state_.evaluations});
+  }
+
+  void look_around() {
+    tell_progress();
     look_at_body();
     estimate_step();
     balance();
@@ -177,6 +210,9 @@ class Verlet {
   }
 
   void step(double dt, double time) {
+    const double before = state_.parameter;
+    if (!settings_.external.empty()) u_before_ = state_.u;
+    damp(0.5 * dt);
     kick(0.5 * dt, dt);
     state_.parameter = time;
     ++state_.steps;
@@ -184,7 +220,21 @@ class Verlet {
     constraints_.apply(state_.u);
     evaluate();
     kick(0.5 * dt, 0);
+    damp(0.5 * dt);
     state_.energy.external_work += work_.since_last_call(constraints_, time);
+    for (const auto& external : settings_.external)
+      state_.energy.external_work += external->work(u_before_, before, state_.u, time);
+  }
+
+  /// The motion of dv/dt = -c v, exact over each half step, before and after the step of the other forces
+  /// (Strang's splitting): stable for any c, and what it takes is known exactly.
+  void damp(double duration) {
+    if (settings_.damping == 0) return;
+    const double before = kinetic_energy(), keep = std::exp(-settings_.damping * duration);
+    parallel_pieces(n_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) state_.v[i] *= keep;
+    });
+    state_.energy.damped += before * (1 - keep * keep);
   }
 
   /// v += kick * F / m, then u += drift * v.
@@ -201,6 +251,8 @@ class Verlet {
     ++state_.evaluations;
     if (const auto breakdown = model_.advance(state_.u, force_))
       fail(watchdog_.inspect(constraints_, state_.u, state_.u, state_.v).value_or(*breakdown));
+    for (const auto& external : settings_.external)
+      external->add(state_.u, state_.v, state_.parameter, force_);
     constraints_.reduce(force_);
   }
 
@@ -230,14 +282,19 @@ class Verlet {
     return 1e-18 * total * speed * speed;
   }
 
+  [[nodiscard]] double kinetic_energy() const {
+    return ordered_sum_of(n_, [&](std::size_t i) { return 0.5 * mass(i) * state_.v[i] * state_.v[i]; });
+  }
+
   void balance() {
     EnergyBalance& energy = state_.energy;
-    energy.kinetic =
-        ordered_sum_of(n_, [&](std::size_t i) { return 0.5 * mass(i) * state_.v[i] * state_.v[i]; });
+    energy.kinetic = kinetic_energy();
     energy.strain = model_.strain_energy(state_.u) - rest_energy_;
     energy.dissipated = model_.dissipated_energy();
+    energy.held = 0;
+    for (const auto& external : settings_.external) energy.held += external->held(state_.u, state_.parameter);
     energy.largest = std::max({energy.largest, energy.kinetic, std::abs(energy.strain), energy.dissipated,
-                               std::abs(energy.external_work)});
+                               energy.damped, std::abs(energy.held), std::abs(energy.external_work)});
   }
 
   void look_at_body() const {
@@ -285,8 +342,11 @@ class Verlet {
   State state_;
   WorkIntegral work_{WorkIntegral::Rule::trapezoidal};
   std::vector<double> force_;
+  std::vector<double> u_before_;      // at the start of the step, where there are external forces
   std::vector<double> inverse_mass_;  // 0 where nothing is free to move
   double step_ = 0;
+  bool resting_ =
+      false;  // on the way to the equilibrium that the motion starts from, which a resumed run begins anew
   long next_estimate_ = 0;  // number of the step after which the stable step is estimated again
   double rest_energy_ = 0;  // that the model has without displacement (J)
   Leg leg_;

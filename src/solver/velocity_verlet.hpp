@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "load/external_force.hpp"
 #include "solver/solver.hpp"
 
 namespace riven {
@@ -15,6 +16,10 @@ struct VelocityVerletSettings {
       step;  // s; default: safety times the stable step, estimated again as the body deforms
   double safety = 0.8;
   std::vector<double> initial_u, initial_v;  // m, m/s, of the free entries; empty: 0
+  ExternalForces external;
+  double damping = 0;  // force per mass and velocity (1/s)
+  // Brings the body to rest under the loads of time 0 first, to this residual (see LoadStepSettings).
+  std::optional<double> rest_tolerance;
 };
 
 /// Largest stable step of Verlet's method (s) in a state, from the bound of the tangent's rows.

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace riven {
+
+/// A force on a body from outside of its model: a traction, a body force, a contact. Stands in no relation to
+/// constraints: what it puts on a prescribed entry, the constraint carries.
+class ExternalForce {
+ public:
+  virtual ~ExternalForce() = default;
+  /// Adds the force (N) in a state to `force`. All three have the model's layout; `v` (m/s) is empty in
+  /// statics. `parameter`: the time (s) in dynamics, the stretch in statics.
+  virtual void add(std::span<const double> u, std::span<const double> v, double parameter,
+                   std::span<double> force) = 0;
+  /// Work (J) that comes from outside on the way from one state, at parameter `before`, to the next.
+  [[nodiscard]] virtual double work(std::span<const double> u_before, double before,
+                                    std::span<const double> u, double parameter) const = 0;
+  /// Potential energy (J) that the force holds in a state, as a contact does; none unless overridden.
+  [[nodiscard]] virtual double held(std::span<const double> /*u*/, double /*parameter*/) const { return 0; }
+};
+
+using ExternalForces = std::vector<std::shared_ptr<ExternalForce>>;
+
+}  // namespace riven
