@@ -198,9 +198,9 @@ struct ProbeInput {  // [[probe]]
   std::string name;
   std::string kind;  // "reaction", "nominal-stress", "displacement", "stretch", "impactor"
   std::string
-      component;  // reaction, displacement: only this one of "x", "y", "z", under the probe's own name
-  Named on;       // reaction, nominal-stress: an edge or a set
-  std::string impactor;           // impactor: its name
+      component;         // reaction, displacement: only this one of "x", "y", "z", under the probe's own name
+  Named on;              // reaction, nominal-stress: an edge or a set
+  std::string impactor;  // impactor: its name
   std::optional<Point> position;  // displacement: a place in the undeformed body (m)
   std::optional<Point> from, to;  // stretch: deformed over undeformed distance of two places
   Location at;

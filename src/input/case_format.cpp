@@ -305,41 +305,43 @@ Format describe(OutputInput& output, const Case& c) {
 
 Format describe(ProbeInput& p, const Case& c) {
   const auto kinds = [&p](std::vector<std::string> among) { return When{"kind", &p.kind, std::move(among)}; };
-  return {.doc = "A number that is followed through the run.",
-          .at = &p.at,
-          .keys = {Key{"name", Text{&p.name}, "Its name in the history and in metrics."}.required(),
-                   Key{"kind", Text{&p.kind, {"reaction", "nominal-stress", "displacement", "stretch", "impactor"}},
-                       "What it measures."}
-                       .required(),
-                   Key{"on", Part{&p.on},
-                       "The edge or set whose external force is summed; the inertia of points that a load "
-                       "moves is not in it."}
-                       .applies(kinds({"reaction", "nominal-stress"}))
-                       .required(),
-                   Key{"component", Text{&p.component, {"x", "y", "z"}},
-                       "Only this component; the metric then has the probe's own name. Otherwise all, as "
-                       "name_x, name_y."}
-                       .applies(kinds({"reaction", "displacement"})),
-                   Key{"at", Place{&p.position}, "A place in the undeformed body."}
-                       .applies(kinds({"displacement"}))
-                       .required(),
-                   Key{"from", Place{&p.from}, "One of two places in the undeformed body."}
-                       .applies(kinds({"stretch"}))
-                       .required(),
-                   Key{"to", Place{&p.to},
-                       "The other place; the probe is their distance over the undeformed one."}
-                       .applies(kinds({"stretch"}))
-                       .required(),
-                   Key{"impactor", Text{&p.impactor},
-                       "The impactor whose position, velocity and force, that of the body on it, are followed: "
-                       "name_position_x and so on."}
-                       .applies(kinds({"impactor"}))
-                       .required()},
-          .finish = [&p, &c](const Check& check) {
-            check_new_name(c.probes, p, check);
-            if (p.kind == "impactor") check_impactor(p.impactor, c, check);
-            if (p.from && p.from == p.to) check.fail("to", "is the same place as from; expected two places");
-          }};
+  return {
+      .doc = "A number that is followed through the run.",
+      .at = &p.at,
+      .keys = {Key{"name", Text{&p.name}, "Its name in the history and in metrics."}.required(),
+               Key{"kind",
+                   Text{&p.kind, {"reaction", "nominal-stress", "displacement", "stretch", "impactor"}},
+                   "What it measures."}
+                   .required(),
+               Key{"on", Part{&p.on},
+                   "The edge or set whose external force is summed; the inertia of points that a load "
+                   "moves is not in it."}
+                   .applies(kinds({"reaction", "nominal-stress"}))
+                   .required(),
+               Key{"component", Text{&p.component, {"x", "y", "z"}},
+                   "Only this component; the metric then has the probe's own name. Otherwise all, as "
+                   "name_x, name_y."}
+                   .applies(kinds({"reaction", "displacement"})),
+               Key{"at", Place{&p.position}, "A place in the undeformed body."}
+                   .applies(kinds({"displacement"}))
+                   .required(),
+               Key{"from", Place{&p.from}, "One of two places in the undeformed body."}
+                   .applies(kinds({"stretch"}))
+                   .required(),
+               Key{"to", Place{&p.to},
+                   "The other place; the probe is their distance over the undeformed one."}
+                   .applies(kinds({"stretch"}))
+                   .required(),
+               Key{"impactor", Text{&p.impactor},
+                   "The impactor whose position, velocity and force, that of the body on it, are followed: "
+                   "name_position_x and so on."}
+                   .applies(kinds({"impactor"}))
+                   .required()},
+      .finish = [&p, &c](const Check& check) {
+        check_new_name(c.probes, p, check);
+        if (p.kind == "impactor") check_impactor(p.impactor, c, check);
+        if (p.from && p.from == p.to) check.fail("to", "is the same place as from; expected two places");
+      }};
 }
 
 // The values of one expectation share a dimension; a plain 0 takes that of its companions.

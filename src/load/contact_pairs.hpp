@@ -56,16 +56,17 @@ class ContactPairs {
  private:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   struct Pair {
-    std::uint32_t other = 0;   // its place in points_
-    std::uint32_t bond = 0;    // offset of the stencil, or number in the list of bonds; kNone
-    double reach = 0;          // m
+    std::uint32_t other = 0;  // its place in points_
+    std::uint32_t bond = 0;   // offset of the stencil, or number in the list of bonds; kNone
+    double reach = 0;         // m
   };
 
   [[nodiscard]] std::uint8_t exposed_bits(std::size_t block) const;
   [[nodiscard]] bool is_exposed_in_list(std::size_t point) const;
   [[nodiscard]] bool still_holds() const;
   void make_list(std::span<const double> u);
-  [[nodiscard]] std::uint32_t bond_between(std::size_t point, std::size_t other) const;
+  void list_pairs();
+  [[nodiscard]] std::uint32_t bond_between(std::size_t n, std::size_t other) const;
   [[nodiscard]] bool bonded(std::size_t point, std::uint32_t bond) const {
     if (bond == kNone) return false;
     if (const LatticeBonds* on = body_.on_lattice()) return on->bonds.exists(bond, point);
@@ -75,12 +76,12 @@ class ContactPairs {
 
   const Body& body_;
   double distance_, skin_;
-  std::vector<std::size_t> near_;         // offsets of the stencil to the nearest neighbours
-  std::vector<std::uint8_t> body_bits_;   // a bit per stored point: a body point
-  std::vector<std::uint8_t> exposed_;     // the same: in points_
+  std::vector<std::size_t> near_;        // offsets of the stencil to the nearest neighbours
+  std::vector<std::uint8_t> body_bits_;  // a bit per stored point: a body point
+  std::vector<std::uint8_t> exposed_;    // the same: in points_
   std::vector<std::size_t> points_;
-  std::vector<Point> rest_, at_;          // of points_: undeformed, and in the state of the last update (m)
-  std::vector<Point> made_at_;            // when the list was made
+  std::vector<Point> rest_, at_;  // of points_: undeformed, and in the state of the last update (m)
+  std::vector<Point> made_at_;    // when the list was made
   std::vector<std::size_t> begin_{0};
   std::vector<Pair> pairs_;
   long lists_ = 0;

@@ -36,8 +36,8 @@ Simulation build_simulation(const Case& input) {
   const PointModel& points = *model;
   simulation.body = &points.body();
   simulation.model = with_contact(input, std::move(model), simulation.contact);
-  simulation.constraints = std::make_unique<Constraints>(simulation.model->dofs(),
-                                                         std::tuple_size_v<decltype(Body::faces)> + 1);
+  simulation.constraints =
+      std::make_unique<Constraints>(simulation.model->dofs(), std::tuple_size_v<decltype(Body::faces)> + 1);
   build_loads(simulation, points);
   build_initial(simulation, simulation.model->dofs());
   build_impactors(simulation);

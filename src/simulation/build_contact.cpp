@@ -21,8 +21,8 @@ class Way {
     for (int n = 0; n < kPanels; ++n) sums_.push_back(sums_.back() + piece(n * panel_, (n + 1) * panel_));
   }
   double operator()(double time) const {
-    const auto n = static_cast<std::size_t>(
-        std::clamp(std::floor(time / panel_), 0.0, static_cast<double>(kPanels)));
+    const auto n =
+        static_cast<std::size_t>(std::clamp(std::floor(time / panel_), 0.0, static_cast<double>(kPanels)));
     const double from = static_cast<double>(n) * panel_;
     return time == from ? sums_[n] : sums_[n] + piece(from, time);
   }
@@ -92,7 +92,8 @@ void check_start(const ImpactorInput& in, const Impactor& impactor, const Simula
   Point where{};
   for (const std::size_t i : body.points) {
     Point at = body.position(i);
-    for (std::size_t d = 0; d < static_cast<std::size_t>(body.dimension) && !simulation.initial_u.empty(); ++d)
+    for (std::size_t d = 0; d < static_cast<std::size_t>(body.dimension) && !simulation.initial_u.empty();
+         ++d)
       at[d] += simulation.initial_u[d * body.size() + i];
     const double depth = depth_of(impactor, {}, at, 0.5 * body.spacing).value;
     if (depth <= deepest) continue;

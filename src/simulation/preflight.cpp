@@ -395,8 +395,7 @@ std::vector<std::string> warnings(const Simulation& simulation) {
                                simulation.parameter == Parameter::time ? "time 0" : "stretch 1"));
   if (!simulation.input.impactors.empty() && !simulation.input.contact &&
       simulation.input.materials.front().critical_stretch)
-    list.emplace_back(
-        "bonds can break, and without [contact] fragments of the body pass through each other");
+    list.emplace_back("bonds can break, and without [contact] fragments of the body pass through each other");
   if (simulation.input.geometry.points) {
     warn_of_volumes(simulation, list);
     warn_of_lonely_points(simulation, list);

@@ -25,7 +25,7 @@ struct Simulation {
   Case input;
   Parameter parameter = Parameter::stretch;  // what the solver marches
   std::unique_ptr<Model> model;
-  const Body* body = nullptr;  // the model's
+  const Body* body = nullptr;             // the model's
   const ContactModel* contact = nullptr;  // the model, where there is contact
   std::unique_ptr<Constraints> constraints;
   std::vector<PointSet> sets;

@@ -35,7 +35,8 @@ inline void cut_bonds(Body& body, Random& random, int count) {
     const std::size_t i = body.points[static_cast<std::size_t>(random.integer(0, last))];
     const auto found = neighbours_of(body, i);
     if (found.empty()) continue;
-    const std::size_t j = found[static_cast<std::size_t>(random.integer(0, static_cast<int>(found.size()) - 1))];
+    const std::size_t j =
+        found[static_cast<std::size_t>(random.integer(0, static_cast<int>(found.size()) - 1))];
     if (body.kind[j] == PointKind::body) cut_bond(body, i, j);
   }
 }
