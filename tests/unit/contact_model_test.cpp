@@ -3,8 +3,8 @@
 #include "load/contact_model.hpp"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
-#include "base/error.hpp"
 #include "solver/velocity_verlet.hpp"
 #include "support/contact_bodies.hpp"
 #include "support/model_properties.hpp"
@@ -244,6 +244,70 @@ TEST(ContactModel, APlaneThatIsPushedDoesWork) {
                model->force_on_impactor(0, watch.states[s].u)[0];
   for (const std::size_t i : sheet.points) momentum_x += mass[i] * end.v[i];
   EXPECT_NEAR(impulse, momentum_x, 1e-12 * momentum_x);
+}
+
+struct Stopped {};
+
+/// Stops at a safe point, with a snapshot.
+struct Stop : Watch {
+  void safe_point(const std::function<Snapshot()>& take) override {
+    if (points++ != at) return;
+    snapshot = take();
+    throw Stopped();
+  }
+  long at = -1, points = 0;
+  Snapshot snapshot;
+};
+
+TEST(ContactModel, GoesOnFromASnapshotWithTheSameBitsOnAnyNumberOfThreads) {
+  // Halves of a sheet that meet and break, with a disc and a wall.
+  const auto make = [] {
+    PmbSettings brittle = kRubbery;
+    brittle.critical_stretch = 0.02;
+    auto model = with_contact(halved_sheet(), true,
+                              {{.name = "disc", .shape = RigidSphere{{0.1, 0.9, 0}, 0.3}, .mass = 3},
+                               {.name = "wall", .shape = RigidPlane{{0, -0.6, 0}, {0, 1, 0}}}},
+                              brittle);
+    Constraints constraints(model->dofs(), 7);
+    for (int axis = 0; axis < 2; ++axis)
+      constraints.add({.slave = model->impactor_entry(1) + static_cast<std::size_t>(axis),
+                       .terms = {{[axis](const Point&, double t) { return axis * t; }, {}, axis, 1, 6}}});
+    return std::pair(std::move(model), std::move(constraints));
+  };
+  const auto run = [&](Observer& observer, const Snapshot* from) {
+    auto [model, constraints] = make();
+    VelocityVerletSettings settings{.until = 0.15, .every = 0.05, .history_every = 0.013};
+    settings.initial_v.assign(model->dofs(), 0.0);
+    settings.initial_v[model->impactor_entry(0) + 1] = -4;
+    return march(*model, constraints, settings, observer, from);
+  };
+  Stop whole;
+  const State expected = run(whole, nullptr);
+  EXPECT_GT(expected.energy.dissipated, 0);
+  EXPECT_GT(expected.v[expected.v.size() - 3], -3);  // the disc was pushed back
+  const int threads_before = omp_get_max_threads();
+  Random random(4);
+  for (int trial = 0; trial < 4; ++trial) {
+    omp_set_num_threads(trial + 1);
+    Stop parts;
+    State state;
+    std::optional<Snapshot> from;
+    for (long stop = random.integer(1, static_cast<int>(whole.points) - 1);; stop += random.integer(1, 40)) {
+      parts.at = stop;
+      try {
+        state = run(parts, from ? &*from : nullptr);
+        break;
+      } catch (const Stopped&) {
+        from = parts.snapshot;
+      }
+    }
+    EXPECT_EQ(parts.points, whole.points);
+    EXPECT_EQ(state.u, expected.u);
+    EXPECT_EQ(state.v, expected.v);
+    EXPECT_EQ(state.energy.external_work, expected.energy.external_work);
+    EXPECT_EQ(state.energy.strain, expected.energy.strain);
+  }
+  omp_set_num_threads(threads_before);
 }
 
 TEST(ContactModel, HardlyShortensTheStep) {
