@@ -202,6 +202,32 @@ struct SolverInput {   // [solver]
   Location at;
 };
 
+struct ContactInput {    // [contact]: points without a bond repel
+  double distance = 0;   // m
+  double stiffness = 1;  // times what follows from the bonds
+  Location at;
+};
+
+struct SphereInput {
+  Point center{};
+  double radius = 0;  // m
+};
+
+struct PlaneInput {
+  Point point{};
+  std::vector<double> normal;  // out of the impactor, of any length
+};
+
+struct ImpactorInput {  // [[impactor]]: rigid, a sphere or a plane
+  std::string name;
+  std::optional<SphereInput> sphere;
+  std::optional<PlaneInput> plane;
+  std::optional<double> mass;            // kg: free; without, the velocity is prescribed
+  std::vector<ComponentInput> velocity;  // one per dimension, or none: at rest
+  double stiffness = 1;                  // times what follows from the bonds
+  Location at;
+};
+
 /// How often a run writes a checkpoint: never if both are 0.
 struct CheckpointInterval {
   double seconds = 0;  // of wall time
@@ -218,11 +244,13 @@ struct OutputInput {                    // [output]
 
 struct ProbeInput {  // [[probe]]
   std::string name;
-  // "reaction", "nominal-stress", "displacement", "stretch", "strain", "largest", or one of cracks
+  // "reaction", "nominal-stress", "displacement", "stretch", "strain", "largest", "overload",
+  // "dissipated-energy", "impactor", or one of cracks
   std::string kind;
   std::string
-      component;  // reaction, displacement: only this one of "x", "y", "z", under the probe's own name
-  Named on;       // reaction, nominal-stress: an edge or a set; of cracks: a set, or nothing for all
+      component;         // reaction, displacement: only this one of "x", "y", "z", under the probe's own name
+  Named on;              // reaction, nominal-stress: an edge or a set; of cracks: a set, or nothing for all
+  std::string impactor;  // impactor: its name
   std::optional<Point> position;  // displacement: a place in the undeformed body (m)
   std::optional<Point> from, to;  // stretch, strain: two places, whose deformed distance is compared
   std::string of, gives;          // largest: a column, and the one of which it gives the value there
@@ -283,6 +311,8 @@ struct Case {
   FailureInput failure;
   std::vector<LoadInput> loads;
   std::vector<InitialInput> initials;
+  std::optional<ContactInput> contact;
+  std::vector<ImpactorInput> impactors;
   SolverInput solver;
   OutputInput output;
   std::vector<ProbeInput> probes;

@@ -7,9 +7,10 @@
 #include <set>
 
 #include "base/nearest_name.hpp"
-#include "input/failure_format.hpp"
+#include "input/contact_format.hpp"
 #include "input/crack_format.hpp"
 #include "input/crack_probe_format.hpp"
+#include "input/failure_format.hpp"
 #include "input/field_format.hpp"
 #include "input/format.hpp"
 #include "input/format_lists.hpp"
@@ -286,7 +287,8 @@ Format describe(OutputInput& output, const Case& c) {
 
 Format describe(ProbeInput& p, const Case& c) {
   const auto kinds = [&p](std::vector<std::string> among) { return When{"kind", &p.kind, std::move(among)}; };
-  std::vector<std::string> all{"reaction", "nominal-stress", "displacement", "stretch", "strain", "largest"};
+  std::vector<std::string> all{"reaction", "nominal-stress", "displacement",      "stretch", "strain",
+                               "largest",  "overload",       "dissipated-energy", "impactor"};
   all.insert(all.end(), crack_probe_kinds().begin(), crack_probe_kinds().end());
   std::vector<Key> keys = {
       Key{"name", Text{&p.name}, "Its name in the history and in metrics."}.required(),
@@ -315,8 +317,14 @@ Format describe(ProbeInput& p, const Case& c) {
           "The metric, of a probe above, whose largest value over the rows of the history is kept."}
           .applies(kinds({"largest"}))
           .required(),
-      Key{"gives", Text{&p.gives}, "Instead of that largest value, what this metric, stretch or time was there."}
-          .applies(kinds({"largest"}))};
+      Key{"gives", Text{&p.gives},
+          "Instead of that largest value, what this metric, stretch or time was there."}
+          .applies(kinds({"largest"})),
+      Key{"impactor", Text{&p.impactor},
+          "The impactor whose position, velocity and force, that of the body on it, are followed: "
+          "name_position_x and so on."}
+          .applies(kinds({"impactor"}))
+          .required()};
   for (Key& key : crack_probe_keys(p)) keys.push_back(std::move(key));
   return {.doc = "A number that is followed through the run.",
           .at = &p.at,
@@ -324,6 +332,7 @@ Format describe(ProbeInput& p, const Case& c) {
           .finish = [&p, &c](const Check& check) {
             check_new_name(c.probes, p, check);
             check_crack_probe(p, c, check);
+            if (p.kind == "impactor") check_impactor(p.impactor, c, check);
             if (p.from && p.from == p.to) check.fail("to", "is the same place as from; expected two places");
           }};
 }
@@ -463,6 +472,14 @@ Format describe(Case& c) {
            Key{"initial", tables(c.initials, [&c](InitialInput& i, std::size_t) { return describe(i, c); }),
                "Initial conditions. Relaxation starts undeformed, since its states do not depend on where "
                "it starts."}
+               .applies(method(c, verlet)),
+           Key{"contact",
+               Table{[&c] { return describe(c.contact, c); }, [&c] { return c.contact.has_value(); }},
+               "Contact of the body with itself."}
+               .applies(method(c, verlet)),
+           Key{"impactor",
+               tables(c.impactors, [&c](ImpactorInput& i, std::size_t) { return describe(i, c); }),
+               "Rigid impactors."}
                .applies(method(c, verlet)),
            Key{"output", Table{[&c] { return describe(c.output, c); }, always}, "The output."}.otherwise(
                "{}"),

@@ -38,12 +38,14 @@ Simulation build_simulation(const Case& input) {
   for (const SetInput& set : input.sets) simulation.sets.push_back(make_set(set, input, body));
   mark_points(input, simulation.sets, body);
   auto model = make_model(input, std::move(body));
-  simulation.body = &model->body();
+  const PointModel& points = *model;
+  simulation.body = &points.body();
+  simulation.model = with_contact(input, std::move(model), simulation.contact);
   simulation.constraints =
-      std::make_unique<Constraints>(model->dofs(), std::tuple_size_v<decltype(Body::faces)> + 1);
-  build_loads(simulation, *model);
-  build_initial(simulation, model->dofs());
-  simulation.model = std::move(model);
+      std::make_unique<Constraints>(simulation.model->dofs(), std::tuple_size_v<decltype(Body::faces)> + 1);
+  build_loads(simulation, points);
+  build_initial(simulation, simulation.model->dofs());
+  build_impactors(simulation);
   return simulation;
 }
 

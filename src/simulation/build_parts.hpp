@@ -34,4 +34,12 @@ void build_loads(Simulation& simulation, const PointModel& model);
 /// Fills the initial state of the body's points. What is prescribed comes from the loads when the run starts.
 void build_initial(Simulation& simulation, std::size_t dofs);
 
+/// The model with the case's contact and impactors, of which `contact` then tells; the model itself without
+/// any.
+std::unique_ptr<Model> with_contact(const Case& in, std::unique_ptr<PointModel> model,
+                                    const ContactModel*& contact);
+
+/// Prescribes how impactors move, or gives them the velocity that they start with.
+void build_impactors(Simulation& simulation);
+
 }  // namespace riven

@@ -400,13 +400,17 @@ std::vector<std::string> warnings(const Simulation& simulation) {
         fmt::format("the model \"{}\" has no energy and holds for the loading \"{}\" only: it is kept for "
                     "comparison; kind = \"membrane\" is the one to use",
                     simulation.input.model.kind, simulation.input.model.loading));
-  if (simulation.input.loads.empty() && simulation.input.initials.empty())
+  if (simulation.input.loads.empty() && simulation.input.initials.empty() &&
+      simulation.input.impactors.empty())
     list.emplace_back("there is no load: nothing will move");
   if (simulation.input.probes.empty())
     list.emplace_back("there is no probe: history.csv and the metrics will be empty");
   if (simulation.input.solver.start != "equilibrium" && jumps_at_start(simulation))
     list.push_back(fmt::format("the loads are not zero at {}: the body starts with a jump",
                                simulation.parameter == Parameter::time ? "time 0" : "stretch 1"));
+  if (!simulation.input.impactors.empty() && !simulation.input.contact &&
+      simulation.input.materials.front().critical_stretch)
+    list.emplace_back("bonds can break, and without [contact] fragments of the body pass through each other");
   if (simulation.input.geometry.points) {
     warn_of_volumes(simulation, list);
     warn_of_lonely_points(simulation, list);

@@ -101,6 +101,13 @@ void Probes::add_columns(const ProbeInput& probe) {
   if (probe.kind == "largest") add_largest(probe);
   if (CrackProbes::is_one(probe))
     for (HistoryColumn& column : CrackProbes::columns(probe)) columns_.push_back(std::move(column));
+  if (probe.kind == "overload") columns_.push_back({probe.name, ""});
+  if (probe.kind == "dissipated-energy") columns_.push_back({probe.name, "J"});
+  if (probe.kind == "impactor") {
+    vector(probe.name + "_position", "m");
+    vector(probe.name + "_velocity", "m/s");
+    vector(probe.name + "_force", "N");
+  }
 }
 
 void Probes::add_largest(const ProbeInput& probe) {
@@ -156,13 +163,17 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
     if (probe.from)
       values.push_back(distance_between(moved(*probe.from, field->at(*probe.from, probe)),
                                         moved(*probe.to, field->at(*probe.to, probe))) /
-                            distance_between(*probe.from, *probe.to) -
-                        (probe.kind == "strain" ? 1 : 0));
+                           distance_between(*probe.from, *probe.to) -
+                       (probe.kind == "strain" ? 1 : 0));
     if (probe.kind == "largest") values.push_back(0);  // filled in when all others are known
     if (CrackProbes::is_one(probe)) {
       const std::vector<double> of_cracks = cracks_.values(n);
       values.insert(values.end(), of_cracks.begin(), of_cracks.end());
     }
+    if (probe.kind == "overload") values.push_back(simulation_.model->overload(state.u));
+    if (probe.kind == "dissipated-energy") values.push_back(state.energy.dissipated);
+    if (probe.kind == "impactor")
+      for (const Point& vector : impactor_of(probe, state)) add(vector, 1);
   }
   largest_.look_at(state.parameter, values);
   return values;
@@ -173,6 +184,24 @@ Point Probes::force_on(std::size_t face, const State& state, const Constraints& 
   for (const AppliedForce& applied : simulation_.applied)
     if (applied.face == face) return applied.force->total(state.parameter);
   return constraints.reaction(face);
+}
+
+/// Position (m) and velocity (m/s) of an impactor, and the force (N) of the body on it.
+std::array<Point, 3> Probes::impactor_of(const ProbeInput& probe, const State& state) const {
+  const std::vector<ImpactorInput>& inputs = simulation_.input.impactors;
+  const auto found = std::find_if(inputs.begin(), inputs.end(),
+                                  [&](const ImpactorInput& in) { return in.name == probe.impactor; });
+  const auto n = static_cast<std::size_t>(found - inputs.begin());
+  const ContactModel& contact = *simulation_.contact;
+  const Point start = contact.impactors()[n].start();
+  Point velocity{};
+  for (std::size_t axis = 0; axis < found->velocity.size(); ++axis)
+    velocity[axis] = (*found->velocity[axis].value)(Variables{.position = start, .t = state.parameter});
+  // A free one has its velocity in the state, which a prescribed one is not a part of.
+  if (found->mass)
+    std::copy_n(state.v.begin() + static_cast<std::ptrdiff_t>(contact.impactor_entry(n)),
+                simulation_.body->dimension, velocity.begin());
+  return {moved(start, contact.moved(n, state.u)), velocity, contact.force_on_impactor(n, state.u)};
 }
 
 /// External force on the points of a set, whichever load holds them.

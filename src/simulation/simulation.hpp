@@ -7,6 +7,7 @@
 #include "body/body.hpp"
 #include "input/case.hpp"
 #include "load/constraints.hpp"
+#include "load/contact_model.hpp"
 #include "load/distributed_force.hpp"
 #include "model/model.hpp"
 #include "output/parameter.hpp"
@@ -35,7 +36,8 @@ struct Simulation {
   Case input;
   Parameter parameter = Parameter::stretch;  // what the solver marches
   std::unique_ptr<Model> model;
-  const Body* body = nullptr;  // the model's
+  const Body* body = nullptr;             // the model's
+  const ContactModel* contact = nullptr;  // the model, where there is contact
   std::unique_ptr<Constraints> constraints;
   std::vector<PointSet> sets;
   std::vector<AppliedForce> applied;

@@ -122,6 +122,54 @@ kind = "displacement"
 at = ["-19 mm", "19 mm"]
 """
 
+# A ball that falls on a plate, and a wall that comes from below. Some bonds break.
+IMPACT = """title = "Ball on a plate"
+
+[geometry]
+box = { size = ["24 mm", "24 mm", "8 mm"], points = [12, 12, 4] }
+horizon = "3 dx"
+
+[model]
+kind = "pmb"
+
+[material.glass]
+law = "linear-elastic"
+youngs_modulus = "72 GPa"
+density = "2440 kg/m^3"
+critical_stretch = 0.004
+
+[contact]
+
+[[impactor]]
+name = "ball"
+sphere = { center = [0, "1 mm", "10.5 mm"], radius = "6 mm" }
+mass = "20 g"
+velocity = [0, 0, "-60 m/s"]
+
+[[impactor]]
+name = "wall"
+plane = { point = [0, 0, "-4.2 mm"], normal = [0, 0, 2] }
+velocity = [0, 0, "10 m/s * (1 - cos(2*pi*t/20us))"]
+
+[solver]
+method = "verlet"
+until = "40 us"
+
+[output]
+every = "10 us"
+history_every = "0.5 us"
+
+[[probe]]
+name = "ball"
+kind = "impactor"
+impactor = "ball"
+
+[[probe]]
+name = "wall"
+kind = "impactor"
+impactor = "wall"
+"""
+
 BLOCK_BOX = 'box = { size = ["40 mm", "20 mm", "30 mm"], from = [0, 0, 0], spacing = "5 mm" }'
 BLOCK = f"""title = "Block"
 

@@ -8,7 +8,7 @@ import subprocess
 import time
 import unittest
 
-from program import HOLE, MOVING, PROGRAM, ProgramTest, fields, history, replaced, series
+from program import HOLE, IMPACT, MOVING, PROGRAM, ProgramTest, fields, history, replaced, series
 
 # A few hundred iterations or steps, each cheap: a run takes about 0.1 s.
 RELAXED = replaced(HOLE, "points = [20, 20]", "points = [14, 14]")
@@ -79,7 +79,7 @@ class Killed(ResumeTest):
     def test_fifty_runs_killed_at_any_moment(self):
         luck = random.Random(5)
         cases = {}
-        for name, text in {"relaxed": RELAXED, "marched": MARCHED}.items():
+        for name, text in {"relaxed": RELAXED, "marched": MARCHED, "impact": IMPACT}.items():
             words = ["run", self.write(f"{name}.toml", text), "--checkpoint-every", "12 steps", "--threads", 1]
             begin = time.monotonic()
             self.command(*words, "-o", f"{name}-whole")

@@ -6,7 +6,7 @@ import random
 import re
 import unittest
 
-from program import BLOCK, BLOCK_BOX, BOX, HOLE, MOVING, PLAIN, POINTS, ProgramTest, box_stl, lattice_csv, replaced, squares
+from program import BLOCK, BLOCK_BOX, BOX, HOLE, IMPACT, MOVING, PLAIN, POINTS, ProgramTest, box_stl, lattice_csv, replaced, squares
 
 EXPECT = """
 [[expect]]
@@ -134,6 +134,25 @@ MISTAKES = [
      "[[inclusion]]", 'the model "correspondence" has no rigid inclusions'),
     ("influence of springs", PMB, 'kind = "pmb"', 'kind = "pmb"\ninfluence = "constant"', "influence",
      'it belongs to kind = "lps"'),
+    ("contact in statics", PLAIN, "[solver]", "[contact]\n\n[solver]", "[contact]", 'method = "verlet"'),
+    ("contact of less than a spacing", IMPACT, "[contact]", '[contact]\ndistance = "0.5 dx"', "distance", "points could pass between others"),
+    ("contact beyond the horizon", IMPACT, "[contact]", '[contact]\ndistance = "4 dx"', "distance", "beyond the horizon"),
+    ("a contact without stiffness", IMPACT, "[contact]", "[contact]\nstiffness = 0", "stiffness", "above 0"),
+    ("an impactor of two shapes", IMPACT, 'mass = "20 g"', 'mass = "20 g"\nplane = { point = [0, 0, 0], normal = [0, 0, 1] }',
+     "[[impactor]]", "sphere, plane"),
+    ("two impactors of one name", IMPACT, 'name = "wall"\nplane', 'name = "ball"\nplane', 'name = "ball"\nplane', "the name of another one"),
+    ("a plane with mass", IMPACT, "velocity = [0, 0, \"10 m/s", "mass = \"1 kg\"\nvelocity = [0, 0, \"10 m/s", "mass = \"1 kg\"",
+     "depends on t"),
+    ("a plane with mass that starts", IMPACT, 'velocity = [0, 0, "10 m/s * (1 - cos(2*pi*t/20us))"]', 'mass = "1 kg"', 'mass = "1 kg"',
+     "belongs to spheres"),
+    ("an impactor that is free in part", IMPACT, '[0, 0, "-60 m/s"]', '["free", 0, "-60 m/s"]', "velocity", "has an entry \"free\""),
+    ("a normal without direction", IMPACT, "normal = [0, 0, 2]", "normal = [0, 0, 0]", "normal", "is zero"),
+    ("a normal in the plane", IMPACT, "normal = [0, 0, 2]", "normal = [0, 2]", "normal", "expected 3"),
+    ("an impactor in the body", IMPACT, '"10.5 mm"', '"9 mm"', "[[impactor]]", "impactor ball: reaches 0.00"),
+    ("an impactor on a wild way", IMPACT, "(1 - cos(2*pi*t/20us))", "sqrt(t/1us - 50)", "[[impactor]]", "no finite number"),
+    ("a probe of no impactor", IMPACT, 'impactor = "ball"', 'impactor = "bal"', 'impactor = "bal"', 'did you mean "ball"?'),
+    ("a probe of an impactor without one", MOVING, 'kind = "reaction"\non = "right"', 'kind = "impactor"\nimpactor = "ball"',
+     'impactor = "ball"', "known are none"),
     ("no density in motion", MOVING, 'density = "1100 kg/m^3"', "", "[material.rubber]", "density"),
     ("empty set", PLAIN + SET.format(name="far", where="x > 1 m"), "x > 1 m", "x > 2 m", "[set.far]", "the set is empty"),
     ("overlap", HOLE + '\n[[hole]]\ndisc = { radius = "5 mm", center = ["9 mm", 0] }\n', "9 mm", "10 mm",
