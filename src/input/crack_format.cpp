@@ -53,7 +53,7 @@ Format describe_file(CrackInput& crack) {
 
 void make_segments(CrackInput& crack, const Check& check) {
   const std::vector<Point> path =
-      crack.path.empty() ? std::vector<Point>{*crack.from, crack.to.value_or(*crack.from)} : crack.path;
+      crack.path.empty() ? std::vector<Point>{*crack.from, *crack.to} : crack.path;
   for (std::size_t n = 0; n + 1 < path.size(); ++n) {
     if (path[n] == path[n + 1] && crack.path.empty())
       check.fail("to", "is the same place as from; expected a crack with a length");
@@ -88,8 +88,6 @@ void finish(CrackInput& crack, const Case& c, const Check& check) {
       check.fail(key, fmt::format("belongs to bodies in {} dimensions; this one has {}",
                                   flat ? "two" : "three", c.geometry.dimension));
   }
-  if (check.given("from") != check.given("to"))
-    check.fail(check.given("to") ? "to" : "from", "a straight crack needs both of its ends, from and to");
   if (crack.from || !crack.path.empty()) return make_segments(crack, check);
   if (crack.file) {
     crack.surface = read_surface(*crack.file, c, check);
@@ -126,7 +124,9 @@ Format describe_crack(CrackInput& crack, const Case& c) {
                        Table{[&crack] { return describe_file(crack); },
                              [&crack] { return crack.file.has_value(); }},
                        "Three dimensions: triangles from an STL file."}},
-          .groups = {{{"from", "path", "polygon", "penny", "surface"}}},
+          // Of the second group, `to` is what goes with `from`.
+          .groups = {{{"from", "path", "polygon", "penny", "surface"}},
+                     {{"to", "path", "polygon", "penny", "surface"}}},
           .finish = [&crack, &c](const Check& check) { finish(crack, c, check); }};
 }
 

@@ -92,6 +92,16 @@ class CrackProbes(ProgramTest):
         self.assertEqual(sorted(sizes.values(), reverse=True), [sizes[number] for number in sorted(sizes)])
         self.assertEqual(min(sizes), 1)
 
+    def test_a_set_is_looked_at_alone(self):
+        sets = '[set.west]\nwhere = "x < 0"\n\n[set.east]\nwhere = "x > 0"\n\n[model]'
+        probes = "".join(f'\n[[probe]]\nname = "{kind}_{on}"\nkind = "{kind}"\non = "{on}"\n' for kind in ("crack-area", "crack-length") for on in ("west", "east"))
+        self.command("run", self.write("strip.toml", replaced(STRIP, "[model]", sets) + probes), "-o", "out", "--threads", 1)
+        last = {name: column[-1] for name, column in self.columns("out")[0].items()}
+        self.assertAlmostEqual((last["crack-area_west"] + last["crack-area_east"]) / last["crack_area"], 1, delta=1e-12)
+        self.assertAlmostEqual(last["crack-length_west"], 0.01, delta=0.002)
+        # No old crack is in the east: its length is from end to end, and a horizon of 2 mm in doubt.
+        self.assertAlmostEqual(last["crack-length_east"], 0.02, delta=0.002)
+
     def test_threads_and_stops_change_no_bit(self):
         case = self.write("strip.toml", STRIP)
         words = ["run", case, "--checkpoint-every", "7 steps"]

@@ -259,7 +259,7 @@ MISTAKES = [
     ("a surface without spacing", SOLID, ', spacing = "5 mm"', "", "surface =", "spacing: missing"),
     ("a surface below the spacing", SOLID, 'unit = "mm"', 'unit = "um"', "surface =", "is larger than the body"),
     ("a surface in no unit", SOLID, 'unit = "mm"', 'unit = "MPa"', "surface =", 'unit: found "MPa"; expected a unit of length'),
-    ("a crack with one end", CRACKED, 'to = ["70 mm", 0]', "", "from =", "needs both of its ends"),
+    ("a crack with one end", CRACKED, 'to = ["70 mm", 0]', "", "[[crack]]", "nothing found; expected one of to, path,"),
     ("a crack of two forms", CRACKED, 'to = ["70 mm", 0]', 'to = ["70 mm", 0]\npath = [[0, 0], ["1 mm", 0]]', "path =", "given together with from"),
     ("a crack without length", CRACKED, '["70 mm", 0]', '["60 mm", 0]', "to =", "the same place as from"),
     ("a path that stands still", CRACKED, 'from = ["60 mm", 0]\nto = ["70 mm", 0]', 'path = [["60 mm", 0], ["70 mm", 0], ["70 mm", 0]]', "path =",
