@@ -29,14 +29,14 @@ void check_sets(const char* key, const std::vector<Named>& on, const Case& c, co
       check.fail(key, fmt::format("\"{}\" is an edge, and edges have no points; expected a set", name.text));
 }
 
-void check_one_limit(const std::optional<double>& stretch, const std::optional<double>& rate,
-                     const Check& check) {
-  if (stretch && rate)
+}  // namespace
+
+void check_limits(const MaterialInput& material, const Case& c, const Check& check) {
+  check_sets("on", material.on, c, check);
+  if (material.critical_stretch && material.critical_energy_release_rate)
     check.fail("critical_energy_release_rate",
                "given together with critical_stretch, which follows from it; expected one of both");
 }
-
-}  // namespace
 
 std::vector<Key> limit_keys(std::optional<double>& stretch, std::optional<double>& energy_release_rate) {
   return {
@@ -84,8 +84,6 @@ void check_failure(const Case& c, const Check& check) {
     check.fail("material", "missing; expected one material, such as [material.rubber]");
   const MaterialInput* rest = nullptr;
   for (const MaterialInput& material : c.materials) {
-    check_sets("material", material.on, c, check);
-    check_one_limit(material.critical_stretch, material.critical_energy_release_rate, check);
     if (!material.on.empty()) continue;
     if (rest != nullptr)
       check.fail("material",

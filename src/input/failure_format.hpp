@@ -14,6 +14,9 @@ Format describe(InterfaceInput& interface, const Case& c);
 /// [failure]
 Format describe(FailureInput& failure, const Case& c);
 
+/// Of one material: its sets and limits. Throws InputError.
+void check_limits(const MaterialInput& material, const Case& c, const Check& check);
+
 /// That materials, interfaces and protected sets go together. Throws InputError.
 void check_failure(const Case& c, const Check& check);
 

@@ -99,6 +99,7 @@ Key key_of(const LawKey& from, MaterialInput& m) {
 }
 
 void check_material(const MaterialInput& m, const Case& c, const Check& check) {
+  check_limits(m, c, check);
   if (c.model.kind == "membrane-bond" && m.law != NeoHookean::name)
     check.fail("law", fmt::format("found \"{}\" with model.kind = \"membrane-bond\", whose bonds are "
                                   "neo-Hookean; expected \"neo-hookean\"",

@@ -60,55 +60,65 @@ double BreakingModel::limit2(std::size_t point, std::size_t end) const {
   return ratio * ratio;
 }
 
-namespace {
-
-/// Mean over bonds of how far they reach across a plane (m), each counted by its part of the energy. Per area
-/// of a plane, as many bonds cross it as their reach over the volume of a point.
-struct Reach {
-  double parts = 0, across = 0;
-  void add(double part, double distance) {
-    parts += part;
-    across += part * distance;
+/// That of the stencil, or the one among the complete families of a list that is like most of them.
+BreakingModel::WholeFamily BreakingModel::whole_family() const {
+  WholeFamily family;
+  if (const LatticeBonds* on = body().on_lattice()) {
+    for (const Point& xi : on->stencil.bond) family.xi.emplace_back(xi.data());
+    family.volume.assign(family.xi.size(), 1);
+    return family;
   }
-  [[nodiscard]] double mean() const { return parts > 0 ? across / parts : 0; }
-};
-
-/// Mean of |cos| over all directions.
-double mean_cosine(int dimension) {
-  return dimension == 1 ? 1 : dimension == 2 ? 2 / std::numbers::pi : 0.5;
+  std::vector<std::pair<double, std::size_t>> sizes;  // volume of a family, its point
+  for (const bool complete : {true, false})
+    for (std::size_t n = 0; n < body().points.size() && (complete || sizes.empty()); ++n) {
+      const std::size_t i = body().points[n];
+      double volume = 0;
+      body().for_each_neighbour(i, [&](std::size_t j) { volume += body().volume[j]; });
+      if (body().complete[i] == complete) sizes.emplace_back(volume, i);
+    }
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  const std::size_t i = middle->second;
+  const Eigen::Vector3d x(body().position(i).data());
+  body().for_each_neighbour(i, [&](std::size_t j) {
+    family.xi.push_back(Eigen::Vector3d(body().position(j).data()) - x);
+    family.volume.push_back(body().volume[j] > 0 ? body().volume[j] : body().volume[i]);  // ghosts have none
+  });
+  return family;
 }
 
-}  // namespace
-
-double BreakingModel::reach() const {
-  if (const LatticeBonds* on = body().on_lattice()) {
-    Reach family;
-    for (const Point& xi : on->stencil.bond)
-      family.add(part_of_energy(Eigen::Vector3d(xi.data())), std::abs(xi[0]));
-    return family.mean();
+/// What families lose when the bonds across a plane break, integrated over their distances from it on both
+/// sides (m): over rows of a lattice, else over distances and directions.
+double BreakingModel::lost_depth(const WholeFamily& family, std::size_t material) const {
+  const bool lattice = body().on_lattice() != nullptr;
+  const double step = lattice ? body().spacing : body().horizon / 32;
+  const int directions = lattice || body().dimension == 1 ? 1 : 24;
+  double lost = 0;
+  for (int n = 0; n < directions; ++n) {
+    // Spread over a half circle, in space over a half sphere by the golden angle.
+    const double z = body().dimension == 3 ? (n + 0.5) / directions : 0;
+    const double angle = body().dimension == 3 ? 2.399963229728653 * n : std::numbers::pi * n / directions;
+    const double r = std::sqrt(1 - z * z);
+    const Eigen::Vector3d normal =
+        lattice ? Eigen::Vector3d::UnitX() : Eigen::Vector3d(r * std::cos(angle), r * std::sin(angle), z);
+    for (double depth = 0.5 * step; depth < body().horizon; depth += step) {
+      std::vector<bool> exists;
+      for (const Eigen::Vector3d& xi : family.xi) exists.push_back(xi.dot(normal) < depth);
+      lost += 2 * step * (1 - share_left(family, exists, material)) / directions;
+    }
   }
-  std::vector<double> complete, all;
-  for (const std::size_t i : body().points) {
-    Reach family;
-    const Eigen::Vector3d x(body().position(i).data());
-    body().for_each_neighbour(i, [&](std::size_t j) {
-      const Eigen::Vector3d xi = Eigen::Vector3d(body().position(j).data()) - x;
-      const double volume = body().volume[j] > 0 ? body().volume[j] : body().volume[i];  // ghosts have none
-      family.add(part_of_energy(xi) * volume, mean_cosine(body().dimension) * xi.norm());
-    });
-    all.push_back(family.mean());
-    if (body().complete[i]) complete.push_back(family.mean());
-  }
-  std::vector<double>& values = complete.empty() ? all : complete;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return lost;
 }
 
 double BreakingModel::critical_stretch(double energy_release_rate, std::size_t a, std::size_t b) const {
   constexpr double kStart = 1e-8, kMost = 1e3;
-  const double density = energy_release_rate / reach();
-  const auto is_enough = [&](double stretch) { return !(equal_stretch_energy(stretch, a, b) < density); };
+  const WholeFamily family = whole_family();
+  const double first = lost_depth(family, a), second = a == b ? first : lost_depth(family, b);
+  const auto is_enough = [&](double stretch) {
+    return !(
+        0.5 * (equal_stretch_energy(stretch, a, b) * first + equal_stretch_energy(stretch, b, a) * second) <
+        energy_release_rate);
+  };
   double high = kStart;
   while (high < kMost && !is_enough(high)) high *= 2;
   if (!is_enough(high))
@@ -238,6 +248,7 @@ Passage BreakingModel::advance(std::span<const double> u, std::span<double> forc
 }
 
 double BreakingModel::overload(std::span<const double> u) const {
+  if (!breaks()) return 0;
   struct Largest {
     double value = 0;
     void operator+=(const Largest& other) { value = std::max(value, other.value); }

@@ -23,10 +23,9 @@ class BreakingModel : public PointModel {
   void set_limits(FailureLimits limits);
   [[nodiscard]] const FailureLimits& limits() const { return limits_; }
   [[nodiscard]] bool breaks() const { return !limits_.stretch.empty(); }
-  /// The limit of stretch that goes with a critical energy release rate (J/m^2) between two materials: when
-  /// all bonds of a family are stretched so, those across a plane along the axes of the lattice hold this
-  /// energy per area, each what it takes with it when it breaks. Of scattered points the plane has any
-  /// direction.
+  /// The limit of stretch that goes with a critical energy release rate (J/m^2) between two materials: where
+  /// all bonds are stretched so, those across a plane take this energy per area with them when they break.
+  /// The plane is one between rows of a lattice; of scattered points it has any place and direction.
   [[nodiscard]] double critical_stretch(double energy_release_rate, std::size_t a, std::size_t b) const;
   /// Energy (J) of a stored point's own family in a state.
   [[nodiscard]] virtual double family_energy(std::size_t point, std::span<const double> u) const = 0;
@@ -37,11 +36,18 @@ class BreakingModel : public PointModel {
   /// Follows the bonds of a stored point, of which some have gone or, after `restore`, come back.
   virtual void refit(std::size_t point) = 0;
 
-  /// Energy density (J/m^3) of a family all of whose bonds have one stretch (r - L) / L, halves of them of
-  /// two materials.
-  [[nodiscard]] virtual double equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const = 0;
-  /// The part of it that one bond takes with it, over its end's volume and up to a factor.
-  [[nodiscard]] virtual double part_of_energy(const Eigen::Vector3d& xi) const = 0;
+  /// A whole family: bonds (m) and volumes of their ends (m^3).
+  struct WholeFamily {
+    std::vector<Eigen::Vector3d> xi;
+    std::vector<double> volume;
+  };
+  /// Energy density (J/m^3) of a family of a material, all of whose bonds have one stretch (r - L) / L, at an
+  /// interface with another one.
+  [[nodiscard]] virtual double equal_stretch_energy(double stretch, std::size_t material,
+                                                    std::size_t other) const = 0;
+  /// The share of it that is left when only some of the bonds are.
+  [[nodiscard]] virtual double share_left(const WholeFamily& family, const std::vector<bool>& exists,
+                                          std::size_t material) const = 0;
 
   /// A bond of a point: offset of the stencil, or place in the list.
   struct LongBond {
@@ -74,7 +80,8 @@ class BreakingModel : public PointModel {
   [[nodiscard]] std::vector<std::uint8_t>& bond_masks() { return own_body().masks(); }
   [[nodiscard]] std::size_t group() const;
   [[nodiscard]] double limit2(std::size_t point, std::size_t end) const;
-  [[nodiscard]] double reach() const;
+  [[nodiscard]] WholeFamily whole_family() const;
+  [[nodiscard]] double lost_depth(const WholeFamily& family, std::size_t material) const;
   void find_least_limits();
   void look_for_long_bonds(std::span<const double> u);
   void add_points_to_lose(std::vector<LongBond>& bonds) const;

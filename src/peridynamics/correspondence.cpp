@@ -17,7 +17,6 @@ namespace riven {
 namespace {
 
 constexpr std::size_t kPiece = 256;  // points that a thread takes at a time
-constexpr double kFlat = 1e4;        // condition of K beyond which bonds lie in too few directions
 
 Kinematics kinematics(int dimension, Plane plane) {
   if (dimension == 3) return Kinematics::solid;

@@ -107,9 +107,8 @@ class Correspondence final : public BreakingModel {
   void refit(std::size_t point) override;
   void limits_set() override;
   [[nodiscard]] double equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const override;
-  [[nodiscard]] double part_of_energy(const Eigen::Vector3d& xi) const override {
-    return influence(settings_.influence, xi.norm(), body().horizon);
-  }
+  [[nodiscard]] double share_left(const WholeFamily& family, const std::vector<bool>& exists,
+                                  std::size_t material) const override;
   void find_shapes();
   void find_shape(std::size_t point);
   [[nodiscard]] std::vector<Material> materials() const;
@@ -149,6 +148,7 @@ class Correspondence final : public BreakingModel {
   template <int D>
   void add_tangent(std::span<const double> u, std::size_t point, TangentBlocks& to) const;
 
+  static constexpr double kFlat = 1e4;  // condition of K beyond which bonds lie in too few directions
   struct Rest {
     double longitudinal = 0, shear = 0;  // of a material in its kinematics (Pa)
   };

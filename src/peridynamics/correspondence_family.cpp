@@ -57,12 +57,32 @@ std::vector<ModelField> Correspondence::fields(std::span<const double> u) {
   return {damage(), std::move(energy), std::move(stress), std::move(gradient)};
 }
 
-double Correspondence::equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const {
+double Correspondence::equal_stretch_energy(double stretch, std::size_t material,
+                                            std::size_t /*other*/) const {
   return in_dimension([&]<int D>(std::integral_constant<int, D>) {
-    const Eigen::Matrix<double, D, D> f = (1 + stretch) * Eigen::Matrix<double, D, D>::Identity();
-    const Constitution &first = laws_[a], &second = laws_[b];
-    return 0.5 * (first.respond<D>(f).energy + second.respond<D>(f).energy);
+    const Constitution& law = laws_[material];
+    return law.respond<D>((1 + stretch) * Eigen::Matrix<double, D, D>::Identity()).energy;
   });
+}
+
+/// As `find_shape` has it.
+double Correspondence::share_left(const WholeFamily& family, const std::vector<bool>& exists,
+                                  std::size_t /*material*/) const {
+  const int dimension = body().dimension;
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(dimension, dimension), left = whole;
+  double whole_weight = 0, left_weight = 0;
+  for (std::size_t k = 0; k < exists.size(); ++k) {
+    const Eigen::VectorXd xi = family.xi[k].head(dimension);
+    const double weight = influence(settings_.influence, xi.norm(), body().horizon) * family.volume[k];
+    whole += weight * xi * xi.transpose();
+    whole_weight += weight;
+    if (!exists[k]) continue;
+    left += weight * xi * xi.transpose();
+    left_weight += weight;
+  }
+  const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(left).eigenvalues();
+  if (!(values[dimension - 1] < kFlat * values[0])) return 0;
+  return std::min(left_weight / whole_weight, whole.inverse().trace() / left.inverse().trace());
 }
 
 double Correspondence::family_energy(std::size_t point, std::span<const double> u) const {

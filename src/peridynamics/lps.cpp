@@ -110,14 +110,26 @@ void Lps::find_constants() {
   lattice_.straight = straight_.data();
 }
 
-double Lps::equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const {
-  double energy = 0;
-  for (const std::size_t material : {a, b}) {
-    const auto [kappa, beta] = constants(settings_[material], body().dimension);
-    const double theta = body().dimension * stretch;
-    energy += 0.25 * (kappa + beta / body().dimension) * theta * theta;
+double Lps::equal_stretch_energy(double stretch, std::size_t material, std::size_t /*other*/) const {
+  const auto [kappa, beta] = constants(settings_[material], body().dimension);
+  const double theta = body().dimension * stretch;
+  return 0.5 * (kappa + beta / body().dimension) * theta * theta;
+}
+
+/// Of the dilatation, and of the sum of squared extensions, the same share is left; the energy has the square
+/// of the first.
+double Lps::share_left(const WholeFamily& family, const std::vector<bool>& exists,
+                       std::size_t material) const {
+  double left = 0, whole = 0;
+  for (std::size_t k = 0; k < exists.size(); ++k) {
+    const double part = omega(family.xi[k]) * family.xi[k].squaredNorm() * family.volume[k];
+    whole += part;
+    if (exists[k]) left += part;
   }
-  return energy;
+  const double share = left / whole;
+  const auto [kappa, beta] = constants(settings_[material], body().dimension);
+  const double of_bonds = beta / body().dimension;
+  return (kappa * share * share + of_bonds * share) / (kappa + of_bonds);
 }
 
 /// A block that has lost bonds keeps its place among those that the kernels visit.

@@ -79,9 +79,8 @@ class Lps final : public BreakingModel {
 
   void refit(std::size_t point) override;
   [[nodiscard]] double equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const override;
-  [[nodiscard]] double part_of_energy(const Eigen::Vector3d& xi) const override {
-    return omega(xi) * xi.squaredNorm();
-  }
+  [[nodiscard]] double share_left(const WholeFamily& family, const std::vector<bool>& exists,
+                                  std::size_t material) const override;
   void find_constants();
   [[nodiscard]] double omega(const Eigen::Vector3d& xi) const;
   void find_anisotropy();

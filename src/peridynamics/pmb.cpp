@@ -61,6 +61,17 @@ double Pmb::equal_stretch_energy(double stretch, std::size_t a, std::size_t b) c
   return 2 / (1 / first + 1 / second) * stretch * stretch;
 }
 
+double Pmb::share_left(const WholeFamily& family, const std::vector<bool>& exists,
+                       std::size_t /*material*/) const {
+  double left = 0, whole = 0;
+  for (std::size_t k = 0; k < exists.size(); ++k) {
+    const double part = family.xi[k].norm() * family.volume[k];
+    whole += part;
+    if (exists[k]) left += part;
+  }
+  return left / whole;
+}
+
 std::vector<double> Pmb::half_compliances() const {
   std::vector<double> values(body().size());
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = 0.5 / micromodulus_[body().material_of(i)];

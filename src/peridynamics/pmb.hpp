@@ -70,7 +70,8 @@ class Pmb final : public BreakingModel {
   void refit(std::size_t point) override;
   void limits_set() override;
   [[nodiscard]] double equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const override;
-  [[nodiscard]] double part_of_energy(const Eigen::Vector3d& xi) const override { return xi.norm(); }
+  [[nodiscard]] double share_left(const WholeFamily& family, const std::vector<bool>& exists,
+                                  std::size_t material) const override;
   [[nodiscard]] double micromodulus_between(std::size_t point, std::size_t end) const;
   [[nodiscard]] std::vector<double> half_compliances() const;
   void make_lattice_kernel(const LatticeBonds& on);

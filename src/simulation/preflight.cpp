@@ -409,7 +409,9 @@ std::vector<std::string> warnings(const Simulation& simulation) {
     list.push_back(fmt::format("the loads are not zero at {}: the body starts with a jump",
                                simulation.parameter == Parameter::time ? "time 0" : "stretch 1"));
   if (!simulation.input.impactors.empty() && !simulation.input.contact &&
-      simulation.input.materials.front().critical_stretch)
+      std::any_of(
+          simulation.input.materials.begin(), simulation.input.materials.end(),
+          [](const MaterialInput& m) { return m.critical_stretch || m.critical_energy_release_rate; }))
     list.emplace_back("bonds can break, and without [contact] fragments of the body pass through each other");
   if (simulation.input.geometry.points) {
     warn_of_volumes(simulation, list);

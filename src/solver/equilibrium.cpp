@@ -36,6 +36,7 @@ void FreeForces::rescale(const State& state) {
 std::optional<std::string> FreeForces::evaluate(State& state) {
   ++state.evaluations;
   std::swap(force_, previous_);
+  std::fill(force_.begin(), force_.end(), 0.0);  // models leave out points without bonds
   if (const auto breakdown = model_.internal_force(state.u, force_))
     return text(watchdog_.inspect(constraints_, state.u, state.u).value_or(*breakdown));
   add_external(state);

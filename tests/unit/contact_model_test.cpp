@@ -17,8 +17,9 @@ constexpr PmbSettings kRubbery{.youngs_modulus = kModulus, .density = kDensity};
 
 /// A model of the body with contact of the default stiffness; impactors get theirs from it.
 std::unique_ptr<ContactModel> with_contact(Body from, bool self, std::vector<Impactor> impactors,
-                                           const PmbSettings& settings = kRubbery) {
-  auto model = std::make_unique<Pmb>(std::move(from), settings);
+                                           std::optional<double> critical_stretch = {}) {
+  auto model = std::make_unique<Pmb>(std::move(from), kRubbery);
+  if (critical_stretch) model->set_limits(FailureLimits::uniform(*critical_stretch));
   const Body& body = model->body();
   const ContactStiffness stiffness = contact_stiffness(*model, body);
   std::optional<SelfContactSettings> contact;
@@ -262,12 +263,10 @@ struct Stop : Watch {
 TEST(ContactModel, GoesOnFromASnapshotWithTheSameBitsOnAnyNumberOfThreads) {
   // Halves of a sheet that meet and break, with a disc and a wall.
   const auto make = [] {
-    PmbSettings brittle = kRubbery;
-    brittle.critical_stretch = 0.02;
     auto model = with_contact(halved_sheet(), true,
                               {{.name = "disc", .shape = RigidSphere{{0.1, 0.9, 0}, 0.3}, .mass = 3},
                                {.name = "wall", .shape = RigidPlane{{0, -0.6, 0}, {0, 1, 0}}}},
-                              brittle);
+                              0.02);
     Constraints constraints(model->dofs(), 7);
     for (int axis = 0; axis < 2; ++axis)
       constraints.add({.slave = model->impactor_entry(1) + static_cast<std::size_t>(axis),

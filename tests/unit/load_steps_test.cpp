@@ -45,7 +45,10 @@ class Scripted final : public Equilibrium {
   using Iterate = std::function<Iteration::Outcome(State&)>;
   Scripted(Model& model, Constraints& constraints, std::string name, std::vector<double>& begun,
            Iterate iterate)
-      : forces_(model, constraints), name_(std::move(name)), begun_(begun), iterate_(std::move(iterate)) {}
+      : forces_(model, constraints, {}),
+        name_(std::move(name)),
+        begun_(begun),
+        iterate_(std::move(iterate)) {}
 
   void begin(const State& state) override {
     forces_.rescale(state);

@@ -1,0 +1,268 @@
+// What models whose bonds break have in common: limits by pairs of materials, the energy that goes, and what
+// is left.
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <functional>
+#include <memory>
+
+#include "base/error.hpp"
+#include "body/listed_body.hpp"
+#include "peridynamics/correspondence.hpp"
+#include "peridynamics/lps.hpp"
+#include "peridynamics/pmb.hpp"
+#include "support/bodies.hpp"
+#include "support/energy_gradient.hpp"
+#include "support/laws.hpp"
+#include "support/point_states.hpp"
+
+namespace riven::testing {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+struct Kind {
+  const char* name;
+  std::function<std::unique_ptr<BreakingModel>(Body, double)> make;  // with one or two materials
+};
+
+/// The second material is `ratio` times as stiff.
+const std::vector<Kind> kKinds = {
+    {"pmb",
+     [](Body body, double ratio) {
+       return std::make_unique<Pmb>(std::move(body),
+                                    std::vector{PmbSettings{.youngs_modulus = 3, .density = 1},
+                                                {.youngs_modulus = 3 * ratio, .density = 2}});
+     }},
+    {"lps",
+     [](Body body, double ratio) {
+       return std::make_unique<Lps>(
+           std::move(body),
+           std::vector{LpsSettings{.youngs_modulus = 3, .poissons_ratio = 0.25, .density = 1},
+                       LpsSettings{.youngs_modulus = 3 * ratio, .poissons_ratio = 0.25, .density = 2}});
+     }},
+    {"correspondence", [](Body body, double ratio) {
+       Material second = unit_laws()[0].material();
+       second.law = NeoHookean{std::get<NeoHookean>(second.law).c10 * ratio};
+       return std::make_unique<Correspondence>(
+           std::move(body),
+           CorrespondenceSettings{.material = unit_laws()[0].material(), .further = {second}});
+     }}};
+
+Body sheet_of(bool as_list, int nx = 16, int ny = 12) {
+  const Body lattice = make_lattice_body(sheet(nx, ny, 0.1));
+  return as_list ? listed(lattice) : lattice;
+}
+
+/// Points above y = 0 have the second material.
+Body of_two(Body body) {
+  std::vector<std::size_t> upper;
+  for (std::size_t n = 0; n < body.points.size(); ++n)
+    if (body.position(body.points[n])[1] > 0) upper.push_back(n);
+  body.mark(body.material, upper, 1);
+  return body;
+}
+
+std::vector<double> stretched(const PointModel& model, double stretch) {
+  std::vector<double> u(model.dofs(), 0.0);
+  const Body& body = model.body();
+  for (const std::size_t i : body.points)
+    for (std::size_t d = 0; d < 2; ++d) u[d * body.size() + i] = stretch * body.position(i)[d];
+  return u;
+}
+
+std::vector<double> lose_bonds(BreakingModel& model, const std::vector<double>& u) {
+  std::vector<double> force(model.dofs());
+  EXPECT_FALSE(model.internal_force(u, force));
+  EXPECT_FALSE(model.advance(u, force).breakdown);
+  return force;
+}
+
+/// Calls visit(point, end, exists) for all bonds of a whole body.
+template <class Visit>
+void for_each_pair(const Body& whole, const Body& broken, const Visit& visit) {
+  for (const std::size_t i : whole.points) {
+    std::vector<std::size_t> left;
+    broken.for_each_neighbour(i, [&](std::size_t j) { left.push_back(j); });
+    whole.for_each_neighbour(
+        i, [&](std::size_t j) { visit(i, j, std::find(left.begin(), left.end(), j) != left.end()); });
+  }
+}
+
+void for_each_model(const std::function<void(const Kind&, bool)>& visit) {
+  for (const Kind& kind : kKinds)
+    for (const bool as_list : {false, true}) {
+      SCOPED_TRACE(std::string(kind.name) + (as_list ? ", listed" : ", lattice"));
+      visit(kind, as_list);
+    }
+}
+
+TEST(BondFailure, AnInterfaceBreaksAtItsOwnLimitAndNowhereElse) {
+  for_each_model([](const Kind& kind, bool as_list) {
+    const Body whole = of_two(sheet_of(as_list));
+    for (const auto& [interface, sides] : {std::pair(0.01, 0.03), std::pair(0.03, 0.01)}) {
+      auto model = kind.make(whole, 5);
+      model->set_limits({{sides, interface, interface, sides}, {}});
+      lose_bonds(*model, stretched(*model, 0.02));
+      int broken = 0;
+      for_each_pair(whole, model->body(), [&](std::size_t i, std::size_t j, bool exists) {
+        const bool across = whole.material_of(i) != whole.material_of(j);
+        EXPECT_EQ(exists, (across ? interface : sides) > 0.02);
+        broken += exists ? 0 : 1;
+      });
+      EXPECT_GT(broken, 0);
+    }
+  });
+}
+
+TEST(BondFailure, ProtectedPointsKeepAllTheirBonds) {
+  for_each_model([](const Kind& kind, bool as_list) {
+    Body whole = sheet_of(as_list);
+    whole.mark(whole.unbreakable, std::vector<std::size_t>{3, 40, 41, 100}, 1);
+    auto model = kind.make(whole, 1);
+    model->set_limits(FailureLimits::uniform(0.01));
+    lose_bonds(*model, stretched(*model, 0.02));
+    for_each_pair(whole, model->body(), [&](std::size_t i, std::size_t j, bool exists) {
+      EXPECT_EQ(exists, whole.is_unbreakable(i) || whole.is_unbreakable(j));
+    });
+  });
+}
+
+TEST(BondFailure, APointThatHasLostTooManyBondsLosesTheRest) {
+  for_each_model([](const Kind& kind, bool as_list) {
+    const Body whole = of_two(sheet_of(as_list));
+    auto model = kind.make(whole, 1);
+    // Across the interface a row of points loses 9, 5 and 2 of its 28 bonds.
+    model->set_limits({{kNever, 0.01, 0.01, 0.5}, {kNever, 0.3}});
+    lose_bonds(*model, stretched(*model, 0.02));
+    const Body& body = model->body();
+    for (const std::size_t i : body.points) {
+      const Point x = whole.position(i);
+      if (std::abs(x[0]) > 0.4) continue;  // whole families
+      const bool upper_row = x[1] > 0 && x[1] < 0.1;
+      EXPECT_EQ(body.family_size(i) == 0, upper_row) << x[1];
+    }
+  });
+}
+
+TEST(BondFailure, TakesTheEnergyOfTheBondsAlongAndLeavesAGradient) {
+  Random random(8);
+  for_each_model([&](const Kind& kind, bool as_list) {
+    for (int n = 0; n < 3; ++n) {
+      auto model = kind.make(of_two(sheet_of(as_list, 9, 8)), 3);
+      model->set_limits({{0.03, 0.05, 0.05, 0.04}, {}});
+      std::vector<double> u = stretched(*model, 0.02), force(model->dofs());
+      for (double& value : u) value += 0.002 * random.between(-1, 1);
+      const double before = model->strain_energy(u);
+      lose_bonds(*model, u);
+      EXPECT_GT(model->dissipated_energy(), 1e-3 * before);
+      EXPECT_NEAR(model->dissipated_energy(), before - model->strain_energy(u), 1e-12 * before);
+      expect_force_is_gradient(*model, u, random);
+    }
+  });
+}
+
+TEST(BondFailure, LeavesNoForceInARotatedBody) {
+  Random random(12);
+  for_each_model([&](const Kind& kind, bool as_list) {
+    auto model = kind.make(sheet_of(as_list), 1);
+    model->set_limits(FailureLimits::uniform(0.02));
+    std::vector<double> u = stretched(*model, 0.015);
+    for (double& value : u) value += 0.002 * random.between(-1, 1);
+    lose_bonds(*model, u);
+    EXPECT_GT(model->dissipated_energy(), 0);
+    const Body& body = model->body();
+    const double angle = 1.2, c = std::cos(angle), s = std::sin(angle);
+    for (const std::size_t i : body.points) {
+      const Point x = body.position(i);
+      u[i] = c * x[0] - s * x[1] - x[0];
+      u[body.size() + i] = s * x[0] + c * x[1] - x[1];
+    }
+    std::vector<double> force(model->dofs());
+    EXPECT_FALSE(model->internal_force(u, force));
+    for (const double value : force) EXPECT_NEAR(value, 0, 1e-12);  // moduli of 1, cells of 0.1
+  });
+}
+
+TEST(BondFailure, HasTheSameBitsOnAnyNumberOfThreadsAndAfterARestore) {
+  const int before = omp_get_max_threads();
+  for_each_model([&](const Kind& kind, bool as_list) {
+    std::vector<std::vector<double>> results;
+    for (const int threads : {1, 2, 3, 7}) {
+      omp_set_num_threads(threads);
+      Random random(77);
+      auto model = kind.make(of_two(sheet_of(as_list)), 3), other = kind.make(of_two(sheet_of(as_list)), 3);
+      for (auto* one : {&model, &other}) (*one)->set_limits({{0.02, 0.03, 0.03, 0.025}, {}});
+      std::vector<double> u = stretched(*model, 0.015);
+      for (double& value : u) value += 0.002 * random.between(-1, 1);
+      results.push_back(lose_bonds(*model, u));
+      results.back().push_back(model->dissipated_energy());
+      Snapshot snapshot;
+      model->save(snapshot);
+      other->restore(snapshot);
+      for (double& value : u) value += 0.001 * random.between(-1, 1);
+      const std::vector<double> first = lose_bonds(*model, u), second = lose_bonds(*other, u);
+      EXPECT_EQ(first, second);
+      EXPECT_EQ(model->dissipated_energy(), other->dissipated_energy());
+      EXPECT_EQ(model->strain_energy(u), other->strain_energy(u));
+    }
+    for (const auto& result : results) EXPECT_EQ(result, results.front());
+  });
+  omp_set_num_threads(before);
+}
+
+/// Energy per area that the bonds across y = 0 take with them, the body stretched equally by `stretch`: from
+/// two lengths of it, so that the ends do not count.
+double released(const Kind& kind, double stretch) {
+  double energy[2];
+  for (const int n : {0, 1}) {
+    auto model = kind.make(of_two(sheet_of(false, 16 + 8 * n, 14)), 1);
+    model->set_limits({{kNever, 0.5 * stretch, 0.5 * stretch, kNever}, {}});
+    lose_bonds(*model, stretched(*model, stretch));
+    energy[n] = model->dissipated_energy();
+  }
+  return (energy[1] - energy[0]) / (8 * 0.1 * 0.7);
+}
+
+TEST(BondFailure, ACrackReleasesTheCriticalEnergy) {
+  for (const Kind& kind : kKinds) {
+    auto model = kind.make(sheet_of(false), 1);
+    const double stretch = model->critical_stretch(1e-4, 0, 0);
+    EXPECT_NEAR(released(kind, stretch) / 1e-4, 1, 1e-9) << kind.name;
+  }
+}
+
+// Silling and Askari's G = pi c s^2 delta^5 / 10 in space, and 9 E s^2 delta / (4 pi) in the plane (theory,
+// section 6), within what a sum over some hundred bonds errs by.
+TEST(BondFailure, HasTheCriticalStretchOfTheContinuumForLongHorizons) {
+  LatticeBodyInput in = sheet(30, 30, 0.1);
+  in.horizon = 1.2;
+  const Pmb model(make_lattice_body(in), PmbSettings{.youngs_modulus = 3, .density = 1});
+  const double s = model.critical_stretch(1e-3, 0, 0);
+  EXPECT_NEAR(9 * 3 * s * s * 1.2 / (4 * std::numbers::pi) / 1e-3, 1, 0.06);
+}
+
+TEST(BondFailure, RefusesLimitsThatAreNone) {
+  auto model = kKinds[0].make(of_two(sheet_of(false)), 1);
+  EXPECT_THROW(model->set_limits(FailureLimits::uniform(0.1)), InputError);  // two materials
+  EXPECT_THROW(model->set_limits(FailureLimits::uniform(-0.1, 2)), InputError);
+  EXPECT_THROW(model->set_limits(FailureLimits::uniform(std::nan(""), 2)), InputError);
+  Correspondence bonds(sheet_of(false),
+                       CorrespondenceSettings{.material = unit_laws()[0].material(),
+                                              .stabilisation = Stabilisation::bond_associated});
+  EXPECT_THROW(bonds.set_limits(FailureLimits::uniform(0.1)), InputError);
+}
+
+TEST(BondFailure, TellsHowNearItIs) {
+  for_each_model([](const Kind& kind, bool as_list) {
+    auto model = kind.make(sheet_of(as_list), 1);
+    const auto u = stretched(*model, 0.02);
+    EXPECT_EQ(model->overload(u), 0);
+    model->set_limits(FailureLimits::uniform(0.05));
+    EXPECT_NEAR(model->overload(u), 0.4, 1e-12);
+  });
+}
+
+}  // namespace
+}  // namespace riven::testing
