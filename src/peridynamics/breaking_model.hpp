@@ -59,6 +59,8 @@ class BreakingModel : public PointModel {
   [[nodiscard]] std::vector<LongBond> long_bonds(std::span<const double> u) const;
   /// Breaks bonds. Returns the points that have lost some, ascending.
   std::vector<std::size_t> lose(std::vector<LongBond> bonds, std::span<const double> u);
+  /// Energy (J) that the body has lost otherwise than with a bond.
+  void take(double energy) { dissipated_ += energy; }
   [[nodiscard]] static Passage passage(const std::vector<LongBond>& bonds);
 
   /// Of groups of points, blocks of eight on a lattice and single ones in a list: the least squared ratio of

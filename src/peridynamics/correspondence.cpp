@@ -64,6 +64,8 @@ bool oriented(const GradientRows& f, std::size_t n) {
   return all;
 }
 
+constexpr double kCrushed = 0.05;  // determinant of F below which a damaged family is debris
+
 /// Room for the gradients, stresses and energies of some points.
 template <std::size_t kPoints>
 struct Batch {
@@ -140,6 +142,8 @@ void Correspondence::find_shapes() {
                 std::vector<double>(body().size(), 0.0));
   for (auto* values : {&spring_, &whole_weight_, &whole_trace_}) values->assign(body().size(), 0.0);
   share_.assign(body().size(), 1.0);
+  debris_.assign(body().size(), 0);
+  crushed_.assign(body().size(), 0);
   for (const std::size_t i : body().points) {
     find_shape(i);
     if (shape_[0][i] == 0) ++loose_;
@@ -161,7 +165,7 @@ void Correspondence::find_shape(std::size_t point) {
   const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k).eigenvalues();
   spring_[point] = 0;
   for (auto& component : shape_) component[point] = 0;
-  if (bonds <= dimension || !(values[dimension - 1] < kFlat * values[0])) return;
+  if (debris_[point] != 0 || bonds <= dimension || !(values[dimension - 1] < kFlat * values[0])) return;
   const Eigen::MatrixXd inverse = k.inverse();
   for (int r = 0, c = 0; r < dimension; ++r)
     for (int s = r; s < dimension; ++s, ++c) shape_[static_cast<std::size_t>(c)][point] = inverse(r, s);
@@ -252,6 +256,50 @@ void Correspondence::make_bonds() {
   pull_.resize(ends.size());
 }
 
+/// Marks damaged families that are crushed, and takes them for undeformed, which has no stress and no energy.
+template <int D>
+void Correspondence::find_crushed(std::size_t begin, std::size_t end, const GradientRows& f) {
+  for_each_row(begin, end, [&](std::size_t i, std::size_t row) {
+    if (share_[i] == 1 || !(determinant<D>(f, row) < kCrushed)) return;
+    crushed_[i] = 1;
+    for (std::size_t c = 0; c < D * D; ++c) f[c][row] = c % (D + 1) == 0 ? 1 : 0;
+  });
+}
+
+void Correspondence::find_crushed(std::size_t begin, std::size_t end, const GradientRows& f) {
+  if (!damaged_) return;
+  in_dimension([&]<int D>(std::integral_constant<int, D>) { find_crushed<D>(begin, end, f); });
+}
+
+/// What is crushed is debris from now on.
+Passage Correspondence::advance(std::span<const double> u, std::span<double> force) {
+  Passage passage = BreakingModel::advance(u, force);
+  if (!damaged_) return passage;
+  std::vector<std::size_t> points;
+  for (const std::size_t i : body().points)
+    if (std::exchange(crushed_[i], 0) != 0 && debris_[i] == 0) points.push_back(i);
+  if (points.empty()) return passage;
+  for (const std::size_t i : points) {
+    const double energy = family_energy(i, u);
+    if (std::isfinite(energy)) take(energy);
+    debris_[i] = 1;
+    refit(i);
+  }
+  passage.breakdown = internal_force(u, force);
+  passage.broken = std::max<std::size_t>(passage.broken, 1);
+  return passage;
+}
+
+void Correspondence::save(Snapshot& to) const {
+  BreakingModel::save(to);
+  to.saving()("correspondence.debris", debris_);
+}
+
+void Correspondence::restore(const Snapshot& from) {
+  from.restoring()("correspondence.debris", debris_);
+  BreakingModel::restore(from);
+}
+
 /// Stresses and energies of the rows that the kernels make of [begin, end), by the law of each row's material
 /// and to the share that its family has left. False where a law says nothing.
 template <class Law>
@@ -290,6 +338,7 @@ bool Correspondence::sweep(Bonds& bonds, const CorrespondenceSweeps<Bonds>& kern
       [&](std::size_t begin, std::size_t end) {
         Batch<kPiece> batch;
         const std::size_t n = kernels.deform(bonds, begin, end, batch.f);
+        find_crushed(begin, end, batch.f);
         const bool turned = !(body().dimension == 2 ? oriented<2>(batch.f, n) : oriented<3>(batch.f, n));
         if (turned && std::is_same_v<Law, Constitution>) sound = false;
         if (!respond(laws, begin, end, n, batch.f, batch.p, batch.energy)) sound = false;
@@ -393,6 +442,7 @@ std::optional<Breakdown> Correspondence::find_fault(std::span<const double> u) c
   return in_dimension([&]<int D>(std::integral_constant<int, D>) -> std::optional<Breakdown> {
     for (const std::size_t i : body().points)
       for (const Gauge<D>& gauge : gauges(family<D>(i, u))) {
+        if (share_[i] < 1 && gauge.f.determinant() < kCrushed) continue;
         const double j = gauge.f.determinant();
         if (!(j > 0))
           return Breakdown{body().position(i),
@@ -432,6 +482,7 @@ double Correspondence::strain_energy(std::span<const double> u) {
         const std::size_t n = body().on_lattice() != nullptr
                                   ? kernels_.lattice.measure(lattice_, begin, end, batch.f, rest)
                                   : kernels_.list.measure(list_, begin, end, batch.f, rest);
+        find_crushed(begin, end, batch.f);
         respond(laws_, begin, end, n, batch.f, batch.p, batch.energy);
         for_each_row(begin, end, [&](std::size_t i, std::size_t row) {
           energy += body().volume[i] * (batch.energy[row] + 0.5 * spring_[i] * rest[row]);
@@ -444,7 +495,7 @@ double Correspondence::strain_energy(std::span<const double> u) {
 template <int D>
 void Correspondence::for_each_gradient(
     std::size_t begin, std::size_t end, std::span<const double> u,
-    const std::function<void(const Eigen::Matrix<double, D, D>&, std::size_t)>& visit) const {
+    const std::function<void(const Eigen::Matrix<double, D, D>&, std::size_t)>& visit) {
   if (settings_.stabilisation == Stabilisation::bond_associated) {
     for (std::size_t i = begin; i < end; ++i)
       for (const Gauge<D>& gauge : gauges(family<D>(i, u))) visit(gauge.f, body().material_of(i));
@@ -456,6 +507,7 @@ void Correspondence::for_each_gradient(
   } else {
     kernels_.list.deform(list_, begin, end, batch.f);
   }
+  find_crushed(begin, end, batch.f);
   for_each_row(begin, end, [&](std::size_t i, std::size_t row) {
     Eigen::Matrix<double, D, D> f;
     for (std::size_t c = 0; c < D * D; ++c)
@@ -478,10 +530,10 @@ std::size_t Correspondence::bytes() const {
 
 template void Correspondence::for_each_gradient<2>(
     std::size_t, std::size_t, std::span<const double>,
-    const std::function<void(const Eigen::Matrix<double, 2, 2>&, std::size_t)>&) const;
+    const std::function<void(const Eigen::Matrix<double, 2, 2>&, std::size_t)>&);
 template void Correspondence::for_each_gradient<3>(
     std::size_t, std::size_t, std::span<const double>,
-    const std::function<void(const Eigen::Matrix<double, 3, 3>&, std::size_t)>&) const;
+    const std::function<void(const Eigen::Matrix<double, 3, 3>&, std::size_t)>&);
 template bool Correspondence::force_by(const std::vector<Majorant<2>>&, std::span<const double>,
                                        std::span<double>);
 template bool Correspondence::force_by(const std::vector<Majorant<3>>&, std::span<const double>,

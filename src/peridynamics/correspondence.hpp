@@ -38,7 +38,8 @@ struct CorrespondenceSettings {
 /// energy times V over the body's points; ghosts have none. Families with bonds in too few directions have
 /// none either. Bonds that break leave the sums, so that rotations stay rotations, and take their share of
 /// the energy: W and s are multiplied by the share of sum(omega V) that is left, and by less where the bonds
-/// left would be stiffer together than the undamaged family.
+/// left would be stiffer together than the undamaged family. A damaged family that
+/// is crushed to next to nothing, or turned inside out, has no energy from then on: it is debris.
 class Correspondence final : public BreakingModel {
  public:
   /// Throws InputError for a body with inclusions or in one dimension, and for an incompressible material in
@@ -59,7 +60,10 @@ class Correspondence final : public BreakingModel {
   [[nodiscard]] std::vector<std::string> describe() const override;
   [[nodiscard]] std::size_t bytes() const override;
 
+  [[nodiscard]] Passage advance(std::span<const double> u, std::span<double> force) override;
   [[nodiscard]] double family_energy(std::size_t point, std::span<const double> u) const override;
+  void save(Snapshot& to) const override;
+  void restore(const Snapshot& from) override;
 
   /// s of a stored point's family (Pa/m^5).
   [[nodiscard]] double spring(std::size_t point) const { return spring_[point]; }
@@ -125,6 +129,9 @@ class Correspondence final : public BreakingModel {
   bool force_by(const std::vector<Law>& laws, std::span<const double> u, std::span<double> force);
   template <class Bonds, class Law>
   bool sweep(Bonds& bonds, const CorrespondenceSweeps<Bonds>& kernels, const std::vector<Law>& laws);
+  template <int D>
+  void find_crushed(std::size_t begin, std::size_t end, const GradientRows& f);
+  void find_crushed(std::size_t begin, std::size_t end, const GradientRows& f);
   template <class Law>
   bool respond(const std::vector<Law>& laws, std::size_t begin, std::size_t end, std::size_t rows,
                const GradientRows& f, const GradientRows& p, double* energy) const;
@@ -138,9 +145,8 @@ class Correspondence final : public BreakingModel {
   [[nodiscard]] std::vector<Majorant<D>> majorants(double a) const;
   /// Calls visit(F, material).
   template <int D>
-  void for_each_gradient(
-      std::size_t begin, std::size_t end, std::span<const double> u,
-      const std::function<void(const Eigen::Matrix<double, D, D>&, std::size_t)>& visit) const;
+  void for_each_gradient(std::size_t begin, std::size_t end, std::span<const double> u,
+                         const std::function<void(const Eigen::Matrix<double, D, D>&, std::size_t)>& visit);
   template <int D>
   [[nodiscard]] double majorant_of(std::span<const double> u);
   template <int D>
@@ -163,6 +169,8 @@ class Correspondence final : public BreakingModel {
   std::vector<double> whole_weight_, whole_trace_;
   std::vector<double> share_;
   bool damaged_ = false;
+  // Of stored points: damaged families without energy, and those that became such in the last evaluation.
+  std::vector<std::uint8_t> debris_, crushed_;
   std::vector<double> volume_;              // of stored points, for ghosts that of their master (m^3)
   std::vector<std::vector<double>> shape_;  // K^-1, upper half row by row
   std::vector<double> spring_;

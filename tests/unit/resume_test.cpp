@@ -146,7 +146,7 @@ const std::vector<SolverCase>& solvers() {
                                             body.position(i), 1, 1, 1, true}}});
          VelocityVerletSettings settings{.until = 1.3, .every = 0.5, .history_every = 0.17};
          settings.damping = 0.7;
-          const auto traction = [](const Point&, double t) { return 0.001 + 0.1 * t; };
+         const auto traction = [](const Point&, double t) { return 0.001 + 0.1 * t; };
          settings.external = {std::make_shared<DistributedForce>(
              DistributedForce::Density{traction}, edge_shares(body, 1, body.spacing), body.size())};
          return march(*p.model, *p.constraints, settings, observer, from);
