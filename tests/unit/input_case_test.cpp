@@ -260,7 +260,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"[[load]]", "[material.other]\nlaw = 'neo-hookean'\nc10 = '1 MPa'\n[[load]]", "17",
               "are without `on`"},
         Wrong{"[[load]]", "[material.other]\non = 'left'\nlaw = 'neo-hookean'\nc10 = '1 MPa'\n[[load]]",
-              "18:6", "is an edge"},
+              "22:6", "is an edge"},
         Wrong{"[[load]]", "[[interface]]\nbetween = ['rubber', 'ruber']\ncritical_stretch = 1\n[[load]]",
               "22:11", "no material \"ruber\""},
         Wrong{"[[load]]", "[[interface]]\nbetween = ['rubber', 'rubber']\ncritical_stretch = 1\n[[load]]",
