@@ -98,6 +98,21 @@ void for_each_model(const std::function<void(const Kind&, bool)>& visit) {
     }
 }
 
+// The second material is five times as stiff: so is the energy of its points away from the interface.
+TEST(BondFailure, PointsHaveTheEnergyOfTheirMaterial) {
+  for_each_model([](const Kind& kind, bool as_list) {
+    const Body body = of_two(sheet_of(as_list));
+    auto model = kind.make(body, 5);
+    const auto u = stretched(*model, 0.02);
+    double upper = 0, lower = 0;  // of the outer rows, which see no end of the other material
+    for (const std::size_t i : body.points)
+      if (std::abs(body.position(i)[1]) > 0.3)
+        (body.position(i)[1] > 0 ? upper : lower) += model->family_energy(i, u);
+    EXPECT_GT(lower, 0);
+    EXPECT_NEAR(upper / lower, 5, 1e-10);
+  });
+}
+
 TEST(BondFailure, AnInterfaceBreaksAtItsOwnLimitAndNowhereElse) {
   for_each_model([](const Kind& kind, bool as_list) {
     const Body whole = of_two(sheet_of(as_list));
@@ -152,15 +167,49 @@ TEST(BondFailure, TakesTheEnergyOfTheBondsAlongAndLeavesAGradient) {
     for (int n = 0; n < 3; ++n) {
       auto model = kind.make(of_two(sheet_of(as_list, 9, 8)), 3);
       model->set_limits({{0.03, 0.05, 0.05, 0.04}, {}});
-      std::vector<double> u = stretched(*model, 0.02), force(model->dofs());
+      std::vector<double> u = stretched(*model, 0.02);
       for (double& value : u) value += 0.002 * random.between(-1, 1);
       const double before = model->strain_energy(u);
-      lose_bonds(*model, u);
+      const std::vector<double> force = lose_bonds(*model, u);
+      EXPECT_EQ(force, force_of(*model, u));  // what broke pulls no more
       EXPECT_GT(model->dissipated_energy(), 1e-3 * before);
       EXPECT_NEAR(model->dissipated_energy(), before - model->strain_energy(u), 1e-12 * before);
       expect_force_is_gradient(*model, u, random);
     }
   });
+}
+
+// In a homogeneous state the energy of a family is its share; the stabilisation, s tr K in a whole one, keeps
+// the same.
+TEST(BondFailure, LeavesTheStabilisationItsShare) {
+  for (const bool as_list : {false, true}) {
+    Correspondence model(of_two(sheet_of(as_list)),
+                         {.material = unit_laws()[0].material(), .further = {unit_laws()[0].material()}});
+    const auto u = stretched(model, 0.02);
+    const auto stabilisation = [&](std::size_t i) {
+      double trace = 0;
+      model.body().for_each_neighbour(i, [&](std::size_t j) {
+        const double length = (place(model.body(), j) - place(model.body(), i)).norm();
+        trace += length;  // influence 1/L, cells of one volume
+      });
+      return model.spring(i) * trace;
+    };
+    const std::vector<std::size_t>& points = model.body().points;
+    std::vector<double> energy, stiffness;
+    for (const std::size_t i : points) {
+      energy.push_back(model.family_energy(i, u));
+      stiffness.push_back(stabilisation(i));
+    }
+    model.set_limits({{kNever, 0.01, 0.01, kNever}, {}});
+    lose_bonds(model, u);
+    double least = 1;
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      const double share = model.family_energy(points[n], u) / energy[n];
+      EXPECT_NEAR(stabilisation(points[n]) / stiffness[n], share, 1e-9);
+      least = std::min(least, share);
+    }
+    EXPECT_LT(least, 0.8);
+  }
 }
 
 TEST(BondFailure, LeavesNoForceInARotatedBody) {
