@@ -138,11 +138,16 @@ struct MaterialInput {  // [material.NAME]
   std::optional<double> critical_stretch;  // elongation over length
   std::optional<double> critical_energy_release_rate;  // J/m^2
   std::optional<double> critical_damage;
+  std::optional<double> critical_energy_density;  // J/m^3
   Location at;
 
   [[nodiscard]] std::optional<double> number(const std::string& key) const {
     const auto found = numbers.find(key);
     return found == numbers.end() ? std::nullopt : found->second;
+  }
+  /// Whether its bonds can break.
+  [[nodiscard]] bool breaks() const {
+    return critical_stretch || critical_energy_release_rate || critical_energy_density;
   }
 };
 
@@ -155,6 +160,7 @@ struct InterfaceInput {              // [[interface]]: bonds between two materia
 
 struct FailureInput {         // [failure]
   std::vector<Named> not_in;  // sets whose bonds never break
+  double excess = 0.1;        // energy above their limit with which bonds may break before steps are halved
   Location at;
 };
 

@@ -72,10 +72,14 @@ Format describe(InterfaceInput& interface, const Case& c) {
 }
 
 Format describe(FailureInput& failure, const Case& c) {
-  return {.doc = "Where bonds do not break.",
+  return {.doc = "Where bonds do not break, and how late they may.",
           .at = &failure.at,
           .keys = {Key{"not_in", Parts{&failure.not_in},
-                       "The set whose points keep all their bonds, or a list of sets."}},
+                       "The set whose points keep all their bonds, or a list of sets."},
+                   Key{"excess", Quantity{&failure.excess, dimension::none, positive},
+                       "Share of their energy that the bonds which break in a step may hold beyond the limit "
+                       "on average; with more, the next steps are halved, to an eighth at the least."}
+                       .applies(When{"solver.method", &c.solver.method, {"verlet"}})},
           .finish = [&failure, &c](const Check& check) { check_sets("not_in", failure.not_in, c, check); }};
 }
 

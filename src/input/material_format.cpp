@@ -136,6 +136,9 @@ Format describe(MaterialInput& m, const Case& c) {
     keys.push_back(std::move(key));
   keys.push_back(Key{"critical_damage", Quantity{&m.critical_damage, dimension::none, fraction},
                      "Share of its bonds that a point has lost when all others break too."});
+  keys.push_back(Key{"critical_energy_density",
+                     Quantity{&m.critical_energy_density, dimension::pressure, positive},
+                     "Strain energy per volume of a point beyond which all its bonds break."});
   keys.push_back(
       Key{"on", Parts{&m.on},
           "The set of points that are of this material, or a list of sets; one material has no `on` "

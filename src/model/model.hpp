@@ -23,6 +23,7 @@ struct Passage {
   std::size_t broken = 0;  // bonds
   /// Their mean energy over that at which they break, less 1: how much too late a step found them.
   double excess = 0;
+  bool stiffer = false;  // what is left may have a shorter stable step
   std::optional<Breakdown> breakdown{};
 };
 

@@ -31,7 +31,7 @@ double squared_cosine(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 }  // namespace
 
 BondMembrane::BondMembrane(Body body, Material material, const BondMembraneSettings& settings)
-    : PointModel(std::move(body), {material.density}),
+    : BreakingModel(std::move(body), {material.density}),
       material_(std::move(material)),
       settings_(settings),
       law_(settings.zero_residual ? zero_residual_law(settings.loading) : published_law(settings.loading)),
@@ -157,6 +157,32 @@ double BondMembrane::energy_density(std::size_t point, std::span<const double> u
   return sum;
 }
 
+double BondMembrane::family_energy(std::size_t point, std::span<const double> u) const {
+  return body().volume[point] > 0 ? body().volume[point] * energy_density(point, u) : 0;
+}
+
+void BondMembrane::refit(std::span<const std::size_t> points) {
+  open_blocks(points, lattice_.blocks);
+}
+
+/// Of a family of infinitely many bonds, to which the surface correction scales those of the lattice.
+double BondMembrane::equal_stretch_energy(double stretch, std::size_t /*material*/,
+                                          std::size_t /*other*/) const {
+  const double c1 = std::get<NeoHookean>(material_.law).c10;
+  return 2 * c1 * (law_.potential((1 + stretch) * (1 + stretch)) + law_.e);
+}
+
+double BondMembrane::share_left(const WholeFamily& family, const std::vector<bool>& exists,
+                                std::size_t /*material*/) const {
+  double left = 0, whole = 0;
+  for (std::size_t k = 0; k < exists.size(); ++k) {
+    const double part = family.volume[k] / family.xi[k].norm();
+    whole += part;
+    if (exists[k]) left += part;
+  }
+  return left / whole;
+}
+
 double BondMembrane::strain_energy(std::span<const double> u) {
   place_inclusions(u);
   return ordered_sum_of(body().points.size(), [&](std::size_t n) {
@@ -235,6 +261,7 @@ std::vector<std::string> BondMembrane::describe() const {
                   law_.force_at_rest(), law_.energy_at_rest()),
       "the force is not the gradient of the energy where bonds turn; the energy balance is no check of a "
       "run"};
+  for (std::string& line : describe_limits()) lines.push_back(std::move(line));
   if (settings_.surface_correction) {
     std::array<double, 2> least{1e300, 1e300}, most{0, 0};
     for (const std::size_t i : body().points)

@@ -6,7 +6,7 @@
 
 #include "material/material.hpp"
 #include "peridynamics/bond_membrane_kernels.hpp"
-#include "peridynamics/point_model.hpp"
+#include "peridynamics/breaking_model.hpp"
 
 namespace riven {
 
@@ -23,7 +23,7 @@ struct BondMembraneSettings {
 /// Ghost points are the source's fictitious layers: they pull at the body with whole bonds, and nothing of
 /// that returns to the points that they mirror. The force on a ghost is half of what it exerts, so that a
 /// reaction is the section force.
-class BondMembrane final : public PointModel {
+class BondMembrane final : public BreakingModel {
  public:
   /// Throws InputError unless the body is two-dimensional and the material neo-Hookean.
   BondMembrane(Body body, Material material, const BondMembraneSettings& settings);
@@ -37,6 +37,7 @@ class BondMembrane final : public PointModel {
   [[nodiscard]] std::vector<ModelField> fields(std::span<const double> u) override;
   [[nodiscard]] std::vector<std::string> describe() const override;
   [[nodiscard]] std::size_t bytes() const override;
+  [[nodiscard]] double family_energy(std::size_t point, std::span<const double> u) const override;
 
   [[nodiscard]] const BondLaw& law() const { return law_; }
   /// Surface correction factors of a body point along x and y.
@@ -64,6 +65,10 @@ class BondMembrane final : public PointModel {
   /// Force density on the point over the deformed bond: f V_far = this times Y (N/m^4).
   [[nodiscard]] double pull(std::size_t point, const Bond& bond, const Eigen::Vector2d& y) const;
   [[nodiscard]] double energy_density(std::size_t point, std::span<const double> u) const;
+  void refit(std::span<const std::size_t> points) override;
+  [[nodiscard]] double equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const override;
+  [[nodiscard]] double share_left(const WholeFamily& family, const std::vector<bool>& exists,
+                                  std::size_t material) const override;
   void make_lattice_kernel(const LatticeBonds& on);
   void find_corrections();
   void gather_point(std::size_t point, std::span<const double> u, std::span<double> force) const;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/lanes.hpp"
@@ -29,9 +31,11 @@ void check(const FailureLimits& limits, const Body& body) {
   for (const double limit : limits.stretch)
     if (!(limit > 0))
       throw InputError(fmt::format("limit of stretch: found {:g}; expected one above 0", limit));
-  for (const double limit : limits.damage)
-    if (!(limit > 0))
-      throw InputError(fmt::format("limit of damage: found {:g}; expected one above 0", limit));
+  for (const auto* of_points : {&limits.damage, &limits.energy_density})
+    for (const double limit : *of_points)
+      if (!(limit > 0))
+        throw InputError(
+            fmt::format("limit of damage or energy density: found {:g}; expected one above 0", limit));
 }
 
 }  // namespace
@@ -51,6 +55,7 @@ void BreakingModel::set_limits(FailureLimits limits) {
     lattice_.beyond = beyond_.data();
     find_long_bonds_ = find_long_bonds(body().dimension);
   }
+  for (auto* marks : {&crushed_, &times_crushed_}) marks->assign(body().size(), 0);
   limits_set();
 }
 
@@ -132,6 +137,14 @@ double BreakingModel::critical_stretch(double energy_release_rate, std::size_t a
   return high;
 }
 
+void BreakingModel::open_blocks(std::span<const std::size_t> points, std::vector<BlockKind>& blocks) {
+  if (blocks.empty()) return;
+  for (const std::size_t i : points) {
+    BlockKind& kind = blocks[i / kLanes];
+    if (kind == BlockKind::intact) kind = BlockKind::partial;
+  }
+}
+
 std::size_t BreakingModel::group() const {
   return body().on_lattice() != nullptr ? kLanes : 1;
 }
@@ -186,6 +199,31 @@ std::vector<BreakingModel::LongBond> BreakingModel::long_bonds(std::span<const d
       kPiece);
   std::vector<LongBond> bonds;
   for (const auto& of_piece : found) bonds.insert(bonds.end(), of_piece.begin(), of_piece.end());
+  const std::vector<LongBond> further = bonds_of_loaded_points(u);
+  bonds.insert(bonds.end(), further.begin(), further.end());
+  return bonds;
+}
+
+/// Of a body point; 0 where there is no limit.
+double BreakingModel::energy_over_limit(std::size_t point, std::span<const double> u) const {
+  if (limits_.energy_density.empty() || body().is_unbreakable(point)) return 0;
+  const double limit = limits_.energy_density[body().material_of(point)];
+  return limit < kNever ? family_energy(point, u) / (body().volume[point] * limit) : 0;
+}
+
+std::vector<BreakingModel::LongBond> BreakingModel::bonds_of_loaded_points(std::span<const double> u) const {
+  std::vector<LongBond> bonds;
+  if (limits_.energy_density.empty()) return bonds;
+  std::vector<double> load(body().points.size());
+  parallel_for(static_cast<std::ptrdiff_t>(load.size()), [&](std::ptrdiff_t n) {
+    const auto at = static_cast<std::size_t>(n);
+    load[at] = energy_over_limit(body().points[at], u);
+  });
+  for (std::size_t n = 0; n < load.size(); ++n)
+    if (load[n] > 1)
+      body().for_each_bond(body().points[n], [&](std::size_t bond, std::size_t j) {
+        if (!body().is_unbreakable(j)) bonds.push_back({body().points[n], bond, j, load[n] - 1});
+      });
   return bonds;
 }
 
@@ -207,7 +245,7 @@ void BreakingModel::add_points_to_lose(std::vector<LongBond>& bonds) const {
     const double whole = body().whole_family[i];
     if (whole > 0 && 1 - left / whole >= limits_.damage[body().material_of(i)])
       body().for_each_bond(i, [&](std::size_t bond, std::size_t j) {
-        if (limit2(i, j) < kNever) bonds.push_back({i, bond, j, 0});
+        if (!body().is_unbreakable(i) && !body().is_unbreakable(j)) bonds.push_back({i, bond, j, 0});
       });
     first = last;
   }
@@ -231,7 +269,7 @@ std::vector<std::size_t> BreakingModel::lose(std::vector<LongBond> bonds, std::s
   };
   const double before = energy();
   for (const LongBond& bond : bonds) own_body().cut(bond.point, bond.bond);
-  for (const std::size_t i : points) refit(i);
+  refit(points);
   dissipated_ += before - energy();
   return points;
 }
@@ -241,10 +279,25 @@ Passage BreakingModel::advance(std::span<const double> u, std::span<double> forc
   look_for_long_bonds(u);
   std::vector<LongBond> bonds = long_bonds(u);
   Passage passage = BreakingModel::passage(bonds);
-  if (bonds.empty()) return passage;
-  lose(std::move(bonds), u);
-  passage.breakdown = internal_force(u, force);
+  if (!bonds.empty()) lose(std::move(bonds), u);
+  if (count_crushed(u)) passage.broken = std::max<std::size_t>(passage.broken, 1);
+  if (passage.broken > 0) passage.breakdown = internal_force(u, force);
+  passage.stiffer = passage.broken > 0 && stiffens();
   return passage;
+}
+
+/// Returns whether there were any.
+bool BreakingModel::count_crushed(std::span<const double> u) {
+  std::vector<std::size_t> points;
+  for (std::size_t i = 0; i < crushed_.size(); ++i)
+    if (std::exchange(crushed_[i], 0) != 0) points.push_back(i);
+  for (const std::size_t i : points) {
+    dissipated_ += crushed_energy(i, u);
+    ++times_crushed_[i];
+  }
+  if (!points.empty()) refit(points);
+  for (const std::size_t i : points) dissipated_ -= family_energy(i, u);
+  return !points.empty();
 }
 
 double BreakingModel::overload(std::span<const double> u) const {
@@ -257,11 +310,13 @@ double BreakingModel::overload(std::span<const double> u) const {
              body().size(),
              [&](std::size_t begin, std::size_t end) {
                Largest most;
-               for (std::size_t i = begin; i < end; ++i)
+               for (std::size_t i = begin; i < end; ++i) {
+                 if (body().kind[i] == PointKind::body) most += {std::sqrt(energy_over_limit(i, u))};
                  body().for_each_neighbour(i, [&](std::size_t j) {
                    const double limit = std::sqrt(limit2(i, j)) - 1;
                    most += {(std::sqrt(squared_ratio(i, j, u)) - 1) / limit};
                  });
+               }
                return most;
              },
              kPiece)
@@ -280,6 +335,11 @@ std::vector<std::string> BreakingModel::describe_limits() const {
                           ? fmt::format("failure: bonds{} break beyond a stretch of {:.6g}", which, limit)
                           : fmt::format("failure: bonds{} never break", which));
     }
+  for (std::size_t m = 0; m < limits_.energy_density.size(); ++m)
+    if (limits_.energy_density[m] < kNever)
+      lines.push_back(fmt::format("failure: all bonds of a point{} break beyond {:.6g} J/m^3",
+                                  limits_.materials() == 1 ? "" : fmt::format(" of material {}", m + 1),
+                                  limits_.energy_density[m]));
   return lines;
 }
 
@@ -289,7 +349,9 @@ void BreakingModel::save(Snapshot& to) const {
 
 void BreakingModel::restore(const Snapshot& from) {
   each_member(*this, from.restoring());
-  for (std::size_t i = 0; i < body().size(); ++i) refit(i);
+  std::vector<std::size_t> all(body().size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  refit(all);
 }
 
 }  // namespace riven

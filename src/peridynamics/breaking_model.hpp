@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 #include "peridynamics/failure_limits.hpp"
@@ -33,8 +34,12 @@ class BreakingModel : public PointModel {
  protected:
   using PointModel::PointModel;
 
-  /// Follows the bonds of a stored point, of which some have gone or, after `restore`, come back.
-  virtual void refit(std::size_t point) = 0;
+  /// Follows the bonds of stored points (ascending), of which some have gone or, after `restore`, come back.
+  virtual void refit(std::span<const std::size_t> points) = 0;
+  /// Whether families may be stiffer after `refit`.
+  [[nodiscard]] virtual bool stiffens() const { return false; }
+  /// For `refit`: blocks of points that have lost bonds are no longer intact, but kernels still visit them.
+  static void open_blocks(std::span<const std::size_t> points, std::vector<BlockKind>& blocks);
 
   /// A whole family: bonds (m) and volumes of their ends (m^3).
   struct WholeFamily {
@@ -52,15 +57,25 @@ class BreakingModel : public PointModel {
   /// A bond of a point: offset of the stencil, or place in the list.
   struct LongBond {
     std::size_t point = 0, bond = 0, end = 0;
-    double excess = 0;  // squared ratio of its stretch to the limit, less 1
+    double excess = 0;  // squared ratio of its stretch to the limit, or ratio of energies, less 1
   };
-  /// Bonds beyond their limit among the groups of points that `beyond` marks, ascending, each from one end or
-  /// from both.
+  /// Bonds to break: those beyond their limit among the groups of points that `beyond` marks, and those of
+  /// points with too much energy; each from one end or from both, or twice.
   [[nodiscard]] std::vector<LongBond> long_bonds(std::span<const double> u) const;
   /// Breaks bonds. Returns the points that have lost some, ascending.
   std::vector<std::size_t> lose(std::vector<LongBond> bonds, std::span<const double> u);
-  /// Energy (J) that the body has lost otherwise than with a bond.
-  void take(double energy) { dissipated_ += energy; }
+  /// Of stored points, by each force evaluation of a model whose families may collapse: in which they have.
+  /// `advance` counts them and has `refit` take them for something simpler from then on. Empty: no bond
+  /// breaks.
+  [[nodiscard]] std::span<std::uint8_t> crushed() { return crushed_; }
+  /// Energy (J) that a crushed family gives up, less what is left of it.
+  [[nodiscard]] virtual double crushed_energy(std::size_t point, std::span<const double> u) const {
+    const double energy = family_energy(point, u);
+    return std::isfinite(energy) ? energy : 0;
+  }
+  [[nodiscard]] int times_crushed(std::size_t point) const {
+    return times_crushed_.empty() ? 0 : times_crushed_[point];
+  }
   [[nodiscard]] static Passage passage(const std::vector<LongBond>& bonds);
 
   /// Of groups of points, blocks of eight on a lattice and single ones in a list: the least squared ratio of
@@ -76,6 +91,7 @@ class BreakingModel : public PointModel {
   template <class Self, class Each>
   static void each_member(Self& self, const Each& each) {
     each("bonds.masks", self.bond_masks());
+    each("bonds.times_crushed", self.times_crushed_);
     each("bonds.dissipated", self.dissipated_);
   }
   [[nodiscard]] const std::vector<std::uint8_t>& bond_masks() const { return body().masks(); }
@@ -86,7 +102,10 @@ class BreakingModel : public PointModel {
   [[nodiscard]] double lost_depth(const WholeFamily& family, std::size_t material) const;
   void find_least_limits();
   void look_for_long_bonds(std::span<const double> u);
+  [[nodiscard]] std::vector<LongBond> bonds_of_loaded_points(std::span<const double> u) const;
+  [[nodiscard]] double energy_over_limit(std::size_t point, std::span<const double> u) const;
   void add_points_to_lose(std::vector<LongBond>& bonds) const;
+  bool count_crushed(std::span<const double> u);
   [[nodiscard]] double squared_ratio(std::size_t point, std::size_t end, std::span<const double> u) const;
 
   FailureLimits limits_;
@@ -94,6 +113,7 @@ class BreakingModel : public PointModel {
   std::vector<std::uint8_t> beyond_;
   StretchLattice lattice_;
   FindLongBonds find_long_bonds_ = nullptr;
+  std::vector<std::uint8_t> crushed_, times_crushed_;
   double dissipated_ = 0;
 };
 

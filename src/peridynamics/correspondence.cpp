@@ -39,10 +39,10 @@ void check(const Material& material, Kinematics kinematics) {
         material.name));
 }
 
-std::vector<double> densities(const CorrespondenceSettings& settings) {
-  std::vector<double> values{settings.material.density};
-  for (const Material& material : settings.further) values.push_back(material.density);
-  return values;
+std::vector<Material> materials(const CorrespondenceSettings& settings) {
+  std::vector<Material> all{settings.material};
+  all.insert(all.end(), settings.further.begin(), settings.further.end());
+  return all;
 }
 
 template <int D>
@@ -84,10 +84,10 @@ struct Batch {
 }  // namespace
 
 Correspondence::Correspondence(Body body, CorrespondenceSettings settings)
-    : BreakingModel(std::move(body), densities(settings)), settings_(std::move(settings)) {
+    : BreakingModel(std::move(body), densities(materials(settings))), settings_(std::move(settings)) {
   const Body& on = Correspondence::body();
   check(on);
-  for (const Material& material : materials()) {
+  for (const Material& material : materials(settings_)) {
     laws_.push_back({material, kinematics(on.dimension, settings_.plane)});
     check(material, laws_.back().kinematics);
     in_dimension([&]<int D>(std::integral_constant<int, D>) {
@@ -106,12 +106,6 @@ Correspondence::Correspondence(Body body, CorrespondenceSettings settings)
     make_lattice(*lattice);
   else
     make_list(std::get<ListedBonds>(on.bonds));
-}
-
-std::vector<Material> Correspondence::materials() const {
-  std::vector<Material> all{settings_.material};
-  all.insert(all.end(), settings_.further.begin(), settings_.further.end());
-  return all;
 }
 
 void Correspondence::limits_set() {
@@ -142,8 +136,6 @@ void Correspondence::find_shapes() {
                 std::vector<double>(body().size(), 0.0));
   for (auto* values : {&spring_, &whole_weight_, &whole_trace_}) values->assign(body().size(), 0.0);
   share_.assign(body().size(), 1.0);
-  debris_.assign(body().size(), 0);
-  crushed_.assign(body().size(), 0);
   for (const std::size_t i : body().points) {
     find_shape(i);
     if (shape_[0][i] == 0) ++loose_;
@@ -165,7 +157,7 @@ void Correspondence::find_shape(std::size_t point) {
   const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k).eigenvalues();
   spring_[point] = 0;
   for (auto& component : shape_) component[point] = 0;
-  if (debris_[point] != 0 || bonds <= dimension || !(values[dimension - 1] < kFlat * values[0])) return;
+  if (times_crushed(point) > 0 || bonds <= dimension || !(values[dimension - 1] < kFlat * values[0])) return;
   const Eigen::MatrixXd inverse = k.inverse();
   for (int r = 0, c = 0; r < dimension; ++r)
     for (int s = r; s < dimension; ++s, ++c) shape_[static_cast<std::size_t>(c)][point] = inverse(r, s);
@@ -178,15 +170,13 @@ void Correspondence::find_shape(std::size_t point) {
   spring_[point] = share_[point] * spring_of(point, k.trace(), weights);
 }
 
-void Correspondence::refit(std::size_t point) {
-  if (body().kind[point] == PointKind::body) find_shape(point);
-  if (share_[point] < 1) damaged_ = true;
-  if (body().on_lattice() == nullptr) {
-    if (!list_.points.empty()) list_.points[point].spring = spring_[point];
-    return;
+void Correspondence::refit(std::span<const std::size_t> points) {
+  for (const std::size_t i : points) {
+    if (body().kind[i] == PointKind::body) find_shape(i);
+    if (share_[i] < 1) damaged_ = true;
+    if (!list_.points.empty()) list_.points[i].spring = spring_[i];
   }
-  BlockKind& kind = lattice_.blocks[point / kLanes];
-  if (kind == BlockKind::intact) kind = BlockKind::partial;
+  open_blocks(points, lattice_.blocks);
 }
 
 void Correspondence::make_lattice(const LatticeBonds& on) {
@@ -260,8 +250,10 @@ void Correspondence::make_bonds() {
 template <int D>
 void Correspondence::find_crushed(std::size_t begin, std::size_t end, const GradientRows& f) {
   for_each_row(begin, end, [&](std::size_t i, std::size_t row) {
-    if (share_[i] == 1 || !(determinant<D>(f, row) < kCrushed)) return;
-    crushed_[i] = 1;
+    if (share_[i] == 1 || times_crushed(i) > 0) return;
+    const bool is_crushed = determinant<D>(f, row) < kCrushed;
+    crushed()[i] = is_crushed ? 1 : 0;
+    if (!is_crushed) return;
     for (std::size_t c = 0; c < D * D; ++c) f[c][row] = c % (D + 1) == 0 ? 1 : 0;
   });
 }
@@ -269,35 +261,6 @@ void Correspondence::find_crushed(std::size_t begin, std::size_t end, const Grad
 void Correspondence::find_crushed(std::size_t begin, std::size_t end, const GradientRows& f) {
   if (!damaged_) return;
   in_dimension([&]<int D>(std::integral_constant<int, D>) { find_crushed<D>(begin, end, f); });
-}
-
-/// What is crushed is debris from now on.
-Passage Correspondence::advance(std::span<const double> u, std::span<double> force) {
-  Passage passage = BreakingModel::advance(u, force);
-  if (!damaged_) return passage;
-  std::vector<std::size_t> points;
-  for (const std::size_t i : body().points)
-    if (std::exchange(crushed_[i], 0) != 0 && debris_[i] == 0) points.push_back(i);
-  if (points.empty()) return passage;
-  for (const std::size_t i : points) {
-    const double energy = family_energy(i, u);
-    if (std::isfinite(energy)) take(energy);
-    debris_[i] = 1;
-    refit(i);
-  }
-  passage.breakdown = internal_force(u, force);
-  passage.broken = std::max<std::size_t>(passage.broken, 1);
-  return passage;
-}
-
-void Correspondence::save(Snapshot& to) const {
-  BreakingModel::save(to);
-  to.saving()("correspondence.debris", debris_);
-}
-
-void Correspondence::restore(const Snapshot& from) {
-  from.restoring()("correspondence.debris", debris_);
-  BreakingModel::restore(from);
 }
 
 /// Stresses and energies of the rows that the kernels make of [begin, end), by the law of each row's material

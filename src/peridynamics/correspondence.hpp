@@ -60,10 +60,7 @@ class Correspondence final : public BreakingModel {
   [[nodiscard]] std::vector<std::string> describe() const override;
   [[nodiscard]] std::size_t bytes() const override;
 
-  [[nodiscard]] Passage advance(std::span<const double> u, std::span<double> force) override;
   [[nodiscard]] double family_energy(std::size_t point, std::span<const double> u) const override;
-  void save(Snapshot& to) const override;
-  void restore(const Snapshot& from) override;
 
   /// s of a stored point's family (Pa/m^5).
   [[nodiscard]] double spring(std::size_t point) const { return spring_[point]; }
@@ -108,14 +105,13 @@ class Correspondence final : public BreakingModel {
                                  : visit(std::integral_constant<int, 3>{});
   }
 
-  void refit(std::size_t point) override;
+  void refit(std::span<const std::size_t> points) override;
   void limits_set() override;
   [[nodiscard]] double equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const override;
   [[nodiscard]] double share_left(const WholeFamily& family, const std::vector<bool>& exists,
                                   std::size_t material) const override;
   void find_shapes();
   void find_shape(std::size_t point);
-  [[nodiscard]] std::vector<Material> materials() const;
   void make_lattice(const LatticeBonds& on);
   void make_list(const ListedBonds& list);
   void make_bonds();
@@ -169,8 +165,6 @@ class Correspondence final : public BreakingModel {
   std::vector<double> whole_weight_, whole_trace_;
   std::vector<double> share_;
   bool damaged_ = false;
-  // Of stored points: damaged families without energy, and those that became such in the last evaluation.
-  std::vector<std::uint8_t> debris_, crushed_;
   std::vector<double> volume_;              // of stored points, for ghosts that of their master (m^3)
   std::vector<std::vector<double>> shape_;  // K^-1, upper half row by row
   std::vector<double> spring_;

@@ -14,10 +14,13 @@ struct FailureLimits {
   std::vector<double> stretch;
   /// Damage at which all bonds of a point of a material break; infinite: never. Empty: no such limit.
   std::vector<double> damage;
+  /// Strain energy density (J/m^3) of a point of a material at which all its bonds break; infinite: never.
+  /// Empty: no such limit.
+  std::vector<double> energy_density;
 
   /// The same limit for all bonds.
   static FailureLimits uniform(double stretch, std::size_t materials = 1) {
-    return {std::vector<double>(materials * materials, stretch), {}};
+    return {std::vector<double>(materials * materials, stretch), {}, {}};
   }
   [[nodiscard]] std::size_t materials() const {
     return static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(stretch.size()))));

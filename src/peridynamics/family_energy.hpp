@@ -52,10 +52,16 @@ FamilyEnergy family_energy(const Law& law, double a, double b) {
 /// no longer settle.
 inline constexpr double kStiffening = 3;
 
+/// How compressed a family is, r = a / J^4: 1 at rest, less in tension.
+inline double compression(double a, double b) {
+  const double j2 = area_ratio_squared(a, b);
+  return a / (j2 * j2);
+}
+/// In the uniaxial compression (0.63) where a family without stabilisation loses stability.
+inline constexpr double kUnstableCompression = 2.5;
+
 /// Modulus of the stabilisation (Pa) as a function of the family averages: `kappa` at rest and in any
-/// tension, and more where compression makes short waves unstable. Its measure is r = a / J^4, which is 1 at
-/// rest, less in tension and 2.5 in the uniaxial compression (0.63) where a family without stabilisation
-/// loses stability.
+/// tension, and more where compression makes short waves unstable.
 inline FamilyEnergy stiffened_modulus(double kappa, double a, double b) {
   const double q = 1 / area_ratio_squared(a, b), q2 = q * q, q3 = q2 * q, q4 = q3 * q;
   const double excess = a * q2 - 1;

@@ -62,12 +62,6 @@ struct Anisotropy {
   [[nodiscard]] double factor() const { return second > 0 ? -first / second : 0; }
 };
 
-std::vector<double> densities(const std::vector<LpsSettings>& settings) {
-  std::vector<double> values;
-  for (const LpsSettings& one : settings) values.push_back(one.density);
-  return values;
-}
-
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -132,11 +126,8 @@ double Lps::share_left(const WholeFamily& family, const std::vector<bool>& exist
   return (kappa * share * share + of_bonds * share) / (kappa + of_bonds);
 }
 
-/// A block that has lost bonds keeps its place among those that the kernels visit.
-void Lps::refit(std::size_t point) {
-  if (body().on_lattice() == nullptr) return;
-  BlockKind& kind = lattice_.blocks[point / kLanes];
-  if (kind == BlockKind::intact) kind = BlockKind::partial;
+void Lps::refit(std::span<const std::size_t> points) {
+  open_blocks(points, lattice_.blocks);
 }
 
 double Lps::omega(const Eigen::Vector3d& xi) const {

@@ -77,7 +77,7 @@ class Lps final : public BreakingModel {
   template <class Visit>
   void for_each_pull(std::size_t point, std::span<const double> u, const Visit& visit) const;
 
-  void refit(std::size_t point) override;
+  void refit(std::span<const std::size_t> points) override;
   [[nodiscard]] double equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const override;
   [[nodiscard]] double share_left(const WholeFamily& family, const std::vector<bool>& exists,
                                   std::size_t material) const override;

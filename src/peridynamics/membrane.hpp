@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "material/material.hpp"
+#include "peridynamics/breaking_model.hpp"
+#include "peridynamics/family_energy.hpp"
 #include "peridynamics/membrane_kernels.hpp"
-#include "peridynamics/point_model.hpp"
 #include "peridynamics/weights.hpp"
 
 namespace riven {
@@ -23,7 +24,12 @@ struct MembraneBond {
 /// Ordinary state-based incompressible membrane for any isotropic W(I1, I2) and any loading: peridynamics
 /// theory, section 5, with the boundary, defect and folding rules of 5a. The force on ghost points is the
 /// gradient of the body's energy.
-class Membrane final : public PointModel {
+///
+/// Where bonds break, the averages are those over the bonds left, and the family keeps the share of its
+/// energy that their base weights have (section 5, broken bonds). A family whose area ratio falls towards
+/// zero goes on with its deformation gradient, and one that is turned inside out then is debris without
+/// energy. A family that cracks have cut at the start is a sound one with a free edge.
+class Membrane final : public BreakingModel {
  public:
   /// `stabilisation`: factor G of the energy against short waves and folding (theory 5a, rule 5).
   /// Throws InputError unless the body is two-dimensional and the material incompressible, a law W(I1, I2).
@@ -45,6 +51,7 @@ class Membrane final : public PointModel {
   }
   [[nodiscard]] std::vector<std::string> describe() const override;
   [[nodiscard]] std::size_t bytes() const override;
+  [[nodiscard]] double family_energy(std::size_t point, std::span<const double> u) const override;
 
   [[nodiscard]] const Material& material() const { return material_; }
   /// First Piola-Kirchhoff stress of a body point (Pa) in the state of the last force or energy evaluation.
@@ -90,10 +97,28 @@ class Membrane final : public PointModel {
                                     const Eigen::Vector2d& y);
   void look_at_bonds();
   void make_families();
+  void fit(std::size_t point);
+  void refit(std::span<const std::size_t> points) override;
+  [[nodiscard]] bool stiffens() const override { return true; }
+  void limits_set() override;
+  [[nodiscard]] double crushed_energy(std::size_t point, std::span<const double> u) const override;
+  [[nodiscard]] bool is_at_crack(std::size_t point) const;
+  [[nodiscard]] std::vector<std::size_t> with_neighbours(std::span<const std::size_t> points) const;
+  [[nodiscard]] double equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const override;
+  [[nodiscard]] double share_left(const WholeFamily& family, const std::vector<bool>& exists,
+                                  std::size_t material) const override;
+  /// Of a body point's energy, since bonds broke.
+  [[nodiscard]] double share_left(std::size_t point) const {
+    return energy_volume_[point] / body().volume[point];
+  }
+  [[nodiscard]] bool is_sound(std::size_t point) const {
+    return share_left(point) == 1 && times_crushed(point) == 0;
+  }
   void set_coefficients(std::size_t point, const Moments& coefficients);
   [[nodiscard]] Moments coefficients(std::size_t point) const;
   void find_intact_blocks(const Moments& whole);
   void add_listed_family(std::size_t point, const FamilyWeights& weights, std::vector<MembraneBond> bonds);
+  void keep_listed_family(ListedFamily family, const ListedFamilyBonds& bonds);
   void sort_incoming();
   [[nodiscard]] std::vector<MembraneBond> bonds_of(std::size_t point) const;
   [[nodiscard]] std::vector<PlaneBond> unshortened_bonds_of(std::size_t point) const;
@@ -101,7 +126,25 @@ class Membrane final : public PointModel {
   [[nodiscard]] double stabilisation_modulus(std::size_t point) const;
 
   void update_points(std::span<const double> u);
+  /// Averages over a family: <s^2>, <s^4> and <Y xi^T / |xi|^2>.
+  struct FamilyAverages {
+    double a = 0, b = 0;
+    Eigen::Matrix2d m = Eigen::Matrix2d::Zero();
+  };
+  struct FamilyResponse {
+    double energy = 0;  // J/m^3
+    PointForce force;
+    Eigen::Matrix2d f;  // deformation gradient
+  };
+  [[nodiscard]] FamilyEnergy energy_by_averages(double a, double b) const {
+    return std::visit([&](const auto& law) { return riven::family_energy(law, a, b); }, law_);
+  }
+  [[nodiscard]] FamilyAverages averages(std::size_t point, std::span<const double> u) const;
+  [[nodiscard]] FamilyResponse respond(std::size_t point, const FamilyAverages& of) const;
+  [[nodiscard]] FamilyResponse respond(const ListedFamily& by_gradient, const FamilyAverages& of) const;
   void respond_listed(const ListedFamily& family, std::span<const double> u);
+  void rest(std::size_t point);
+  void find_crushed();
   void set_point(std::size_t point, double energy, const PointForce& force);
   [[nodiscard]] PointForce point_force(std::size_t point) const {
     return body().on_lattice() != nullptr ? lattice_.law(point) : list_.law(point);
@@ -130,6 +173,10 @@ class Membrane final : public PointModel {
   MembraneLattice lattice_;  // one of both is in use
   MembraneList list_;
   std::vector<double> smallest_weight_;  // of the family over its base weight, before any repair
+  std::vector<double> base_weight_;      // of the family at the start (1/m)
+  std::vector<double> energy_volume_;    // volume times the share of the energy left (m^3)
+  FamilyWeights whole_;                  // of a whole stencil, once one was met
+  double most_energy_density_ = 0;       // of a family all of whose bonds have the limit of stretch (J/m^3)
   std::size_t collapsed_ = 0;            // families with a formula, in the present state
 };
 

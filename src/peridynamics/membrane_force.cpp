@@ -1,9 +1,9 @@
 // Forces of the membrane: what the kernels do for the points whose weights have a formula, then the others.
 
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "base/parallel.hpp"
-#include "peridynamics/family_energy.hpp"
 #include "peridynamics/membrane.hpp"
 
 namespace riven {
@@ -36,6 +36,7 @@ void Membrane::update_points(std::span<const double> u) {
       kPiece);
   parallel_for(static_cast<std::ptrdiff_t>(listed_.size()),
                [&](std::ptrdiff_t n) { respond_listed(listed_[static_cast<std::size_t>(n)], u); });
+  find_crushed();
 }
 
 void Membrane::set_point(std::size_t point, double energy, const PointForce& force) {
@@ -47,44 +48,93 @@ void Membrane::set_point(std::size_t point, double energy, const PointForce& for
   }
 }
 
-void Membrane::respond_listed(const ListedFamily& family, std::span<const double> u) {
-  const std::size_t i = family.point;
-  if (family.begin == family.end) {
-    planes_.mean_s2[i] = planes_.mean_s4[i] = 1;
-    for (std::size_t c = 0; c < 4; ++c) planes_.mean_gradient[c][i] = c % 3 == 0 ? 0.5 : 0;
-    return set_point(i, 0, {});
-  }
-  double a = 0, b = 0;
-  Eigen::Matrix2d m = Eigen::Matrix2d::Zero();
-  for (std::size_t n = family.begin; n < family.end; ++n) {
-    const MembraneBond bond = listed_bond(n);
-    const Eigen::Vector2d y = deformed(i, bond, u);
+Membrane::FamilyAverages Membrane::averages(std::size_t point, std::span<const double> u) const {
+  FamilyAverages of;
+  for_each_bond(point, [&](const MembraneBond& bond) {
+    const Eigen::Vector2d y = deformed(point, bond, u);
     const double inverse2 = 1 / bond.reference.squaredNorm();
     const double s2 = y.squaredNorm() * inverse2;
-    a += bond.weight * s2;
-    b += bond.weight * s2 * s2;
-    m += bond.weight * inverse2 * y * bond.reference.transpose();
+    of.a += bond.weight * s2;
+    of.b += bond.weight * s2 * s2;
+    of.m += bond.weight * inverse2 * y * bond.reference.transpose();
+  });
+  return of;
+}
+
+/// By the averages; theory, eq. (9), and rule 5 of 5a.
+Membrane::FamilyResponse Membrane::respond(std::size_t point, const FamilyAverages& of) const {
+  const Eigen::Matrix2d f = 2 * of.m;
+  const double v = energy_volume_[point], z2 = of.a - f.cwiseProduct(of.m).sum();
+  const FamilyEnergy e = energy_by_averages(of.a, of.b);
+  const FamilyEnergy k = stiffened_modulus(planes_.kappa[point], of.a, of.b);
+  return {e.w + k.w * z2,
+          {2 * v * (e.wa + k.w + k.wa * z2), 4 * v * (e.wb + k.wb * z2), entries(-2 * v * k.w * f)},
+          f};
+}
+
+/// By the deformation gradient; theory, eq. (5).
+Membrane::FamilyResponse Membrane::respond(const ListedFamily& family, const FamilyAverages& of) const {
+  const Eigen::Matrix2d f = of.m * family.inverse_shape;
+  const double v = energy_volume_[family.point], kappa = planes_.kappa[family.point];
+  const PlaneResponse response = material_.plane_stress(f);
+  return {response.energy + kappa * (of.a - f.cwiseProduct(of.m).sum()),
+          {2 * v * kappa, 0, entries(v * (response.stress * family.inverse_shape - 2 * kappa * f))},
+          f};
+}
+
+double Membrane::family_energy(std::size_t point, std::span<const double> u) const {
+  if (energy_volume_[point] == 0) return 0;
+  const ListedFamily* family = listed_family(point);
+  if (family != nullptr && family->begin == family->end) return 0;
+  const FamilyAverages of = averages(point, u);
+  return energy_volume_[point] *
+         (family != nullptr && family->by_gradient ? respond(*family, of).energy : respond(point, of).energy);
+}
+
+/// What a family holds beyond the limit a step has put into it that went too far.
+double Membrane::crushed_energy(std::size_t point, std::span<const double> u) const {
+  return std::min(BreakingModel::crushed_energy(point, u), body().volume[point] * most_energy_density_);
+}
+
+/// The state of a family without energy.
+void Membrane::rest(std::size_t point) {
+  planes_.mean_s2[point] = planes_.mean_s4[point] = 1;
+  for (std::size_t c = 0; c < 4; ++c) planes_.mean_gradient[c][point] = c % 3 == 0 ? 0.5 : 0;
+  set_point(point, 0, {});
+}
+
+void Membrane::respond_listed(const ListedFamily& family, std::span<const double> u) {
+  const std::size_t i = family.point;
+  if (family.begin == family.end) return rest(i);
+  const FamilyAverages of = averages(i, u);
+  const FamilyResponse response = family.by_gradient ? respond(family, of) : respond(i, of);
+  planes_.mean_s2[i] = of.a;
+  planes_.mean_s4[i] = of.b;
+  if (family.by_gradient) {  // so that (7) tells a collapse here too
+    const double j = response.f.determinant();
+    planes_.mean_s4[i] = 0.5 * (3 * of.a * of.a - j * j);
   }
-  planes_.mean_s2[i] = a;
-  planes_.mean_s4[i] = b;
-  const Eigen::Matrix2d f =
-      family.by_gradient ? Eigen::Matrix2d(m * family.inverse_shape) : Eigen::Matrix2d(2 * m);
-  const auto half_f = entries(0.5 * f);  // as for the points of the formula
+  const auto half_f = entries(0.5 * response.f);  // as for the points of the formula
   for (std::size_t c = 0; c < 4; ++c) planes_.mean_gradient[c][i] = half_f[c];
-  const double v = body().volume[i], kappa = planes_.kappa[i];
-  const double z2 = a - f.cwiseProduct(m).sum();  // mean of |Y - F xi|^2 / |xi|^2
-  if (family.by_gradient) {
-    planes_.mean_s4[i] =
-        0.5 * (3 * a * a - f.determinant() * f.determinant());  // so that (7) tells a collapse here too
-    const PlaneResponse response = material_.plane_stress(f);
-    set_point(i, response.energy + kappa * z2,
-              {2 * v * kappa, 0, entries(v * (response.stress * family.inverse_shape - 2 * kappa * f))});
-  } else {
-    const FamilyEnergy e = std::visit([&](const auto& law) { return family_energy(law, a, b); }, law_);
-    const FamilyEnergy k = stiffened_modulus(kappa, a, b);
-    set_point(i, e.w + k.w * z2,
-              {2 * v * (e.wa + k.w + k.wa * z2), 4 * v * (e.wb + k.wb * z2), entries(-2 * v * k.w * f)});
-  }
+  set_point(i, response.energy, response.force);
+}
+
+/// In a sheet that breaks. Ahead of a crack bonds of a family differ much, and the area ratio (7), exact in
+/// homogeneous states, falls far below the real one: a family that seems as compressed as where it loses
+/// stability changes to its deformation gradient, which is debris when it is turned inside out or holds more
+/// than a family all of whose bonds are about to break.
+void Membrane::find_crushed() {
+  if (!breaks()) return;
+  parallel_for(static_cast<std::ptrdiff_t>(body().points.size()), [&](std::ptrdiff_t n) {
+    const std::size_t i = body().points[static_cast<std::size_t>(n)];
+    const double a = planes_.mean_s2[i], b = planes_.mean_s4[i];
+    const bool has_collapsed = collapsed(a, b);
+    const bool is_over = times_crushed(i) == 0 ? compression(a, b) > kUnstableCompression
+                                               : planes_.energy_density[i] > most_energy_density_;
+    const bool inside_out = !is_sound(i) && !(gradient(i).determinant() > 0);
+    crushed()[i] = has_collapsed || is_over || inside_out ? 1 : 0;
+    if (has_collapsed && !is_sound(i)) rest(i);
+  });
 }
 
 std::optional<Breakdown> Membrane::first_collapsed() const {
@@ -93,6 +143,7 @@ std::optional<Breakdown> Membrane::first_collapsed() const {
                                       [&](const ListedFamily& family) { return is_collapsed(family.point); }))
     return std::nullopt;
   const auto first = std::find_if(body().points.begin(), body().points.end(), is_collapsed);
+  if (first == body().points.end()) return std::nullopt;  // taken care of
   return Breakdown{body().position(*first), "the sheet collapses: the area ratio of a family falls to zero"};
 }
 

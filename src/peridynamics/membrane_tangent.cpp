@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 
-#include "peridynamics/family_energy.hpp"
 #include "peridynamics/membrane.hpp"
 
 namespace riven {
@@ -10,7 +9,7 @@ namespace riven {
 /// The energy is V (W(a, b) + k(a, b) z) with z = a - 2 M:M.
 Membrane::SumHessian Membrane::sum_hessian(std::size_t point) const {
   const double a = planes_.mean_s2[point], b = planes_.mean_s4[point];
-  const FamilyEnergy e = std::visit([&](const auto& law) { return family_energy(law, a, b); }, law_);
+  const FamilyEnergy e = energy_by_averages(a, b);
   const FamilyEnergy k = stiffened_modulus(planes_.kappa[point], a, b);
   const auto m = flat<2>(gradient(point));
   const double z = a - 2 * m.squaredNorm();
@@ -22,7 +21,7 @@ Membrane::SumHessian Membrane::sum_hessian(std::size_t point) const {
   h.block<4, 1>(2, 1) = -4 * k.wb * m;
   h.block<2, 4>(0, 2) = h.block<4, 2>(2, 0).transpose();
   h.bottomRightCorner<4, 4>().diagonal().setConstant(-4 * k.w);
-  return body().volume[point] * h;
+  return energy_volume_[point] * h;
 }
 
 /// The energy is V (W(F) + k (a - F:M)) with F = M S, S the inverse shape.
@@ -33,7 +32,7 @@ Membrane::SumHessian Membrane::sum_hessian(const ListedFamily& family) const {
   for (int r = 0; r < 2; ++r) by_m.block<2, 2>(2 * r, 2 * r) = family.inverse_shape;
   SumHessian h = SumHessian::Zero();
   h.bottomRightCorner<4, 4>() = by_m.transpose() * response.tangent * by_m - 2 * planes_.kappa[i] * by_m;
-  return body().volume[i] * h;
+  return energy_volume_[i] * h;
 }
 
 /// With the gradients g_s of the six sums s by the bonds, the Hessian of the energy E is the sum of E_st g_s

@@ -23,12 +23,6 @@ double dilatation_modulus(const PmbSettings& settings, int dimension) {
   return settings.plane == Plane::stress ? e / (1 - 1.0 / 3) : e / ((1 + 0.25) * (1 - 0.5));
 }
 
-std::vector<double> densities(const std::vector<PmbSettings>& settings) {
-  std::vector<double> values;
-  for (const PmbSettings& one : settings) values.push_back(one.density);
-  return values;
-}
-
 }  // namespace
 
 Pmb::Pmb(Body body, std::vector<PmbSettings> settings)
@@ -132,11 +126,8 @@ void Pmb::make_lattice_kernel(const LatticeBonds& on) {
     lattice_.uniform_weight = first;
 }
 
-/// A block that has lost bonds keeps its place among those that the kernels visit.
-void Pmb::refit(std::size_t point) {
-  if (body().on_lattice() == nullptr) return;
-  BlockKind& kind = lattice_.blocks[point / kLanes];
-  if (kind == BlockKind::intact) kind = BlockKind::partial;
+void Pmb::refit(std::span<const std::size_t> points) {
+  open_blocks(points, lattice_.blocks);
 }
 
 void Pmb::limits_set() {

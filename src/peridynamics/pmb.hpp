@@ -67,7 +67,7 @@ class Pmb final : public BreakingModel {
   void for_each_pull(std::size_t point, std::span<const double> u, const Visit& visit) const;
   [[nodiscard]] double full_volume(std::size_t point) const;
   [[nodiscard]] double family_moment() const;
-  void refit(std::size_t point) override;
+  void refit(std::span<const std::size_t> points) override;
   void limits_set() override;
   [[nodiscard]] double equal_stretch_energy(double stretch, std::size_t a, std::size_t b) const override;
   [[nodiscard]] double share_left(const WholeFamily& family, const std::vector<bool>& exists,

@@ -39,6 +39,13 @@ class PointModel : public Model {
   /// `density` of each of the body's materials (kg/m^3), the first one of the inclusions too. Throws
   /// InputError unless the inclusions are discs or boxes of a two-dimensional body.
   PointModel(Body body, std::vector<double> density);
+  /// The densities in the settings of a body's materials.
+  template <class Settings>
+  static std::vector<double> densities(const std::vector<Settings>& of) {
+    std::vector<double> values;
+    for (const Settings& one : of) values.push_back(one.density);
+    return values;
+  }
   // Kernels hold on to places in a model's vectors: those move with it, but a copy would look at the
   // original.
   PointModel(PointModel&&) = default;

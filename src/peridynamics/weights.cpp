@@ -15,6 +15,10 @@ constexpr double kSmallestRatio = 0.05;
 // Largest error of a moment with which the identities (7) are still taken as exact.
 constexpr double kMomentTolerance = 1e-6;
 
+double base_weight(const PlaneBond& bond) {
+  return 1 / std::hypot(bond.x, bond.y);
+}
+
 /// Non-negative least squares min |A x - b|, x >= 0 by the active sets of Lawson and Hanson (1974), ch. 23.
 VectorXd non_negative_least_squares(const MatrixXd& a, const VectorXd& b) {
   const Eigen::Index n = a.cols();
@@ -74,12 +78,23 @@ Moments angular_functions(const PlaneBond& bond) {
   return {1, c2, s2, c2 * c2 - s2 * s2, 2 * c2 * s2};
 }
 
-FamilyWeights moment_corrected_weights(std::span<const PlaneBond> bonds) {
+double total_weight(std::span<const PlaneBond> bonds) {
+  double sum = 0;
+  for (const PlaneBond& bond : bonds) sum += base_weight(bond);
+  return sum;
+}
+
+FamilyWeights base_weights(std::span<const PlaneBond> bonds) {
   FamilyWeights family;
-  if (bonds.empty()) {
-    family.kind = FamilyWeights::Kind::gradient;
-    return family;
-  }
+  family.kind = FamilyWeights::Kind::gradient;
+  const double scale = total_weight(bonds);
+  for (const PlaneBond& bond : bonds) family.weight.push_back(base_weight(bond) / scale);
+  return family;
+}
+
+FamilyWeights moment_corrected_weights(std::span<const PlaneBond> bonds) {
+  if (bonds.empty()) return base_weights(bonds);
+  FamilyWeights family;
   const auto n = static_cast<Eigen::Index>(bonds.size());
   MatrixXd phi(kMoments, n);
   VectorXd w0(n);
@@ -87,7 +102,7 @@ FamilyWeights moment_corrected_weights(std::span<const PlaneBond> bonds) {
     const PlaneBond& bond = bonds[static_cast<std::size_t>(j)];
     const Moments f = angular_functions(bond);
     for (std::size_t m = 0; m < kMoments; ++m) phi(static_cast<Eigen::Index>(m), j) = f[m];
-    w0(j) = 1 / std::hypot(bond.x, bond.y);
+    w0(j) = base_weight(bond);
   }
   const double scale = w0.sum();
   w0 /= scale;

@@ -36,5 +36,9 @@ struct FamilyWeights {
 
 /// `bonds`: the family (any number, also none); base weight w0 = 1/length.
 FamilyWeights moment_corrected_weights(std::span<const PlaneBond> bonds);
+/// The base weights, normalised: of kind `gradient`.
+FamilyWeights base_weights(std::span<const PlaneBond> bonds);
+/// Sum of the base weights (1/m), before they are normalised.
+double total_weight(std::span<const PlaneBond> bonds);
 
 }  // namespace riven

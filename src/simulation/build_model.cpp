@@ -41,15 +41,23 @@ void set_limits(const Case& in, BreakingModel& model) {
       for (double* limit : {&limits.stretch[a * count + b], &limits.stretch[b * count + a]})
         *limit = std::min(*limit, own);
     limits.damage.push_back(in.materials[a].critical_damage.value_or(kNever));
+    limits.energy_density.push_back(in.materials[a].critical_energy_density.value_or(kNever));
   }
   for (const InterfaceInput& interface : in.interfaces) {
     const std::size_t a = material_number(in, interface.between[0]);
     const std::size_t b = material_number(in, interface.between[1]);
     limits.stretch[a * count + b] = limits.stretch[b * count + a] = limit_of(interface, model, a, b).value();
   }
-  if (std::any_of(limits.stretch.begin(), limits.stretch.end(),
-                  [](double limit) { return std::isfinite(limit); }))
-    model.set_limits(std::move(limits));
+  const auto some = [](const std::vector<double>& of) {
+    return std::any_of(of.begin(), of.end(), [](double limit) { return std::isfinite(limit); });
+  };
+  if (!some(limits.energy_density)) limits.energy_density.clear();
+  if (some(limits.stretch) || some(limits.energy_density)) model.set_limits(std::move(limits));
+}
+
+std::unique_ptr<PointModel> with_limits(const Case& in, std::unique_ptr<BreakingModel> model) {
+  set_limits(in, *model);
+  return model;
 }
 
 BondMembraneSettings bond_settings(const ModelInput& in) {
@@ -97,8 +105,7 @@ std::unique_ptr<PointModel> make_pmb(const Case& in, Body body) {
                         .plane = plane_of(in)});
   auto model = std::make_unique<Pmb>(std::move(body), std::move(settings));
   for (const MaterialInput& material : in.materials) check_poissons_ratio(material, *model);
-  set_limits(in, *model);
-  return model;
+  return with_limits(in, std::move(model));
 }
 
 std::unique_ptr<PointModel> make_lps(const Case& in, Body body) {
@@ -109,9 +116,7 @@ std::unique_ptr<PointModel> make_lps(const Case& in, Body body) {
                         .density = material.density,
                         .plane = plane_of(in),
                         .influence = influence_of(in)});
-  auto model = std::make_unique<Lps>(std::move(body), std::move(settings));
-  set_limits(in, *model);
-  return model;
+  return with_limits(in, std::make_unique<Lps>(std::move(body), std::move(settings)));
 }
 
 CorrespondenceSettings correspondence_settings(const Case& in) {
@@ -127,9 +132,7 @@ CorrespondenceSettings correspondence_settings(const Case& in) {
 }
 
 std::unique_ptr<PointModel> make_correspondence(const Case& in, Body body) {
-  auto model = std::make_unique<Correspondence>(std::move(body), correspondence_settings(in));
-  set_limits(in, *model);
-  return model;
+  return with_limits(in, std::make_unique<Correspondence>(std::move(body), correspondence_settings(in)));
 }
 
 /// Names of the laws of which something holds.
@@ -163,17 +166,11 @@ void check_law(const Case& in, const MaterialInput& material) {
                                  material.name, in.model.kind));
 }
 
-/// Membranes have one material, whose bonds hold.
 void check_membrane(const Case& in) {
-  const auto refuse = [&](const Location& at, const std::string& what) {
-    throw InputError(at, fmt::format("the model \"{}\" has {}; expected kind = \"pmb\", \"lps\" or "
-                                     "\"correspondence\"",
-                                     in.model.kind, what));
-  };
-  if (in.materials.size() > 1) refuse(in.materials[1].at, "one material");
-  for (const MaterialInput& material : in.materials)
-    if (material.critical_stretch || material.critical_energy_release_rate || material.critical_damage)
-      refuse(material.at, "bonds that do not break yet");
+  if (in.materials.size() > 1)
+    throw InputError(in.materials[1].at, fmt::format("the model \"{}\" has one material; expected kind = "
+                                                     "\"pmb\", \"lps\" or \"correspondence\"",
+                                                     in.model.kind));
 }
 
 }  // namespace
@@ -191,8 +188,10 @@ std::unique_ptr<PointModel> make_model(const Case& in, Body body) {
     if (in.model.kind == "correspondence") return make_correspondence(in, std::move(body));
     const Material material = make_material(in.materials.front());
     if (in.model.kind == "membrane-bond")
-      return std::make_unique<BondMembrane>(std::move(body), material, bond_settings(in.model));
-    return std::make_unique<Membrane>(std::move(body), material, in.model.stabilisation.value());
+      return with_limits(in,
+                         std::make_unique<BondMembrane>(std::move(body), material, bond_settings(in.model)));
+    return with_limits(in,
+                       std::make_unique<Membrane>(std::move(body), material, in.model.stabilisation.value()));
   } catch (const InputError& error) {
     const std::string what = error.what();
     if (what.starts_with(in.file.string())) throw;

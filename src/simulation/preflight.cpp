@@ -409,9 +409,8 @@ std::vector<std::string> warnings(const Simulation& simulation) {
     list.push_back(fmt::format("the loads are not zero at {}: the body starts with a jump",
                                simulation.parameter == Parameter::time ? "time 0" : "stretch 1"));
   if (!simulation.input.impactors.empty() && !simulation.input.contact &&
-      std::any_of(
-          simulation.input.materials.begin(), simulation.input.materials.end(),
-          [](const MaterialInput& m) { return m.critical_stretch || m.critical_energy_release_rate; }))
+      std::any_of(simulation.input.materials.begin(), simulation.input.materials.end(),
+                  [](const MaterialInput& m) { return m.breaks(); }))
     list.emplace_back("bonds can break, and without [contact] fragments of the body pass through each other");
   if (simulation.input.geometry.points) {
     warn_of_volumes(simulation, list);

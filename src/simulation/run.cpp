@@ -37,6 +37,7 @@ State solve(const Simulation& simulation, Observer& observer, const Snapshot* fr
     settings.initial_v = simulation.initial_v;
     settings.external = simulation.external;
     settings.damping = in.damping;
+    settings.excess = simulation.input.failure.excess;
     if (in.start == "equilibrium") settings.rest_tolerance = in.start_tolerance;
     return march(*simulation.model, *simulation.constraints, settings, observer, from);
   }

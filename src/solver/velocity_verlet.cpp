@@ -15,10 +15,11 @@ namespace riven {
 
 namespace {
 
-constexpr long kStepsBetweenEstimates = 100;
+constexpr long kLeastEstimateInterval = 5, kMostEstimateInterval = 100;  // steps
 // Verlet keeps the energy to the square of step times frequency, a few per cent at the most; beyond this the
 // run is lost.
 constexpr double kRunaway = 0.1;
+constexpr double kMuchShorter = 0.95;  // stable step over the one before: it is falling
 
 /// Steps of equal length that end at a time at which something is written, exactly.
 struct Leg {
@@ -123,7 +124,9 @@ class Verlet {
     each("verlet.force", self.force_);
     each("verlet.step", self.step_);
     each("verlet.resting", self.resting_);
+    each("verlet.limit", self.limit_);
     each("verlet.next_estimate", self.next_estimate_);
+    each("verlet.estimate_interval", self.estimate_interval_);
     each("verlet.rest_energy", self.rest_energy_);
     Leg::each_member(self.leg_, each);
     Pace::each_member(self.pace_, each);
@@ -268,6 +271,7 @@ class Verlet {
       ++state_.evaluations;
       take_forces();
       work_.begin(constraints_, state_.parameter);
+      if (passage.stiffer) estimate_soon();
     }
     pace_.look(passage);
   }
@@ -311,8 +315,12 @@ class Verlet {
   }
 
   void estimate_step() {
-    next_estimate_ = state_.steps + kStepsBetweenEstimates;
     const double limit = stable_step(model_, constraints_, state_.u);
+    estimate_interval_ = limit < kMuchShorter * limit_
+                             ? kLeastEstimateInterval
+                             : std::min(2 * estimate_interval_, kMostEstimateInterval);
+    next_estimate_ = state_.steps + estimate_interval_;
+    limit_ = limit;
     if (!settings_.step) {
       step_ = settings_.safety * limit;
       return;
@@ -325,6 +333,11 @@ class Verlet {
         fmt::format("at t = {:.6g} s {}: the body has stiffened as it deformed; leave solver.step out to "
                     "have it follow",
                     state_.parameter, what));
+  }
+
+  void estimate_soon() {
+    estimate_interval_ = kLeastEstimateInterval;
+    next_estimate_ = std::min(next_estimate_, state_.steps + estimate_interval_);
   }
 
   [[nodiscard]] double mass(std::size_t i) const { return inverse_mass_[i] > 0 ? 1 / inverse_mass_[i] : 0; }
@@ -401,8 +414,10 @@ class Verlet {
   double step_ = 0;
   bool resting_ =
       false;  // on the way to the equilibrium that the motion starts from, which a resumed run begins anew
-  long next_estimate_ = 0;  // number of the step after which the stable step is estimated again
-  double rest_energy_ = 0;  // that the model has without displacement (J)
+  double limit_ = 0;                                // stable step as estimated last (s)
+  long next_estimate_ = 0;                          // number of the step after which it is estimated again
+  long estimate_interval_ = kMostEstimateInterval;  // steps from one estimate to the next
+  double rest_energy_ = 0;                          // that the model has without displacement (J)
   Leg leg_;
   Pace pace_{settings_.excess};
   Schedule outputs_, history_;

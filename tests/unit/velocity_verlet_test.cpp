@@ -8,6 +8,7 @@
 #include "support/bodies.hpp"
 #include "support/laws.hpp"
 #include "support/loads.hpp"
+#include "support/pulled_point.hpp"
 #include "support/states.hpp"
 
 namespace riven::testing {
@@ -229,6 +230,52 @@ TEST(VelocityVerlet, StartsPrescribedEntriesWhereTheLoadsSay) {
     EXPECT_EQ(observer.first.u[i], held ? 0 : 0.01);
     EXPECT_EQ(observer.first.v[i], held ? 0 : 1);
   }
+}
+
+/// A spring that says of each step how late something broke in it.
+class LateSpring final : public PulledPoint {
+ public:
+  explicit LateSpring(std::vector<Passage> passages) : passages_(std::move(passages)) {}
+  std::optional<Breakdown> internal_force(std::span<const double> u, std::span<double> force) override {
+    force[0] = 0;
+    force[1] = -u[1];
+    return std::nullopt;
+  }
+  double strain_energy(std::span<const double> u) override { return 0.5 * u[1] * u[1]; }
+  void stiffness_bound(std::span<const double>, std::span<double> bound) override { bound[0] = bound[1] = 1; }
+  Passage advance(std::span<const double>, std::span<double>) override {
+    return asked_ < passages_.size() ? passages_[asked_++] : Passage{};
+  }
+
+ private:
+  std::vector<Passage> passages_;  // the first one at the start
+  std::size_t asked_ = 0;
+};
+
+long steps_of(const std::vector<Passage>& passages) {
+  LateSpring spring(passages);
+  Constraints constraints = pull_point();
+  Observer observer;
+  return march(spring, constraints, {.until = 1, .every = 1, .history_every = 1, .step = 0.01}, observer)
+      .steps;
+}
+
+// A tenth is what is allowed. Steps of 1, 1/2 and 1/4 hundredths find bonds late, the rest of the way goes by
+// eighths at the least.
+TEST(VelocityVerlet, HalvesItsStepWhileBondsBreakLate) {
+  const Passage late{.broken = 1, .excess = 0.11}, in_time{.broken = 1, .excess = 0.09}, quiet;
+  EXPECT_EQ(steps_of(std::vector<Passage>(2000, in_time)), 100);
+  std::vector<Passage> passages{quiet, late};
+  passages.resize(2000, in_time);
+  EXPECT_EQ(steps_of(passages), 1 + 198);
+  passages = {quiet};
+  passages.resize(2000, late);
+  EXPECT_EQ(steps_of(passages), 3 + 786);
+}
+
+// After 16 quiet steps of half the length, whole ones again.
+TEST(VelocityVerlet, GoesBackToWholeStepsWhenNothingBreaks) {
+  EXPECT_EQ(steps_of({Passage{}, Passage{.broken = 1, .excess = 1}}), 1 + 16 + 91);
 }
 
 }  // namespace
