@@ -81,6 +81,7 @@ class SpaceTime final : public TimeStepMethod {
   [[nodiscard]] double dissipated() const override { return slab_.dissipated(); }
   [[nodiscard]] long evaluations() const override { return evaluations_; }
   [[nodiscard]] long iterations() const override { return iterations_; }
+  [[nodiscard]] bool never_adds_energy() const override { return true; }
   [[nodiscard]] std::string name() const override { return "Newton's method in a slab"; }
   void save(Snapshot& to) const override { each_member(*this, to.saving()); }
   void restore(const Snapshot& from) override { each_member(*this, from.restoring()); }

@@ -13,8 +13,9 @@ namespace riven {
 
 namespace {
 
-constexpr int kMostCuts = 14;  // of a step; then the run ends
-// Energy from nowhere beyond this part of it is no error of a method that only ever takes some.
+// Of the step given, or of the first one: where shorter steps would be needed the run ends.
+constexpr double kLeastStep = 1e-4;
+// Energy from nowhere beyond this part of it is no error of a step.
 constexpr double kRunaway = 0.1;
 // Steps that are chosen: the energy that a method takes grows with the fourth power of its step, so that a
 // step twice as long would take sixteen times as much.
@@ -85,6 +86,7 @@ void TimeSteps::begin() {
   break_bonds();
   method_->restart(state_, internal_, force_);
   wanted_ = settings_.step.value_or(kFirstStep * stable_step(model_, constraints_, state_.u));
+  least_ = kLeastStep * wanted_;
   balance(state_);
   state_.energy.external_work = state_.energy.total();
   observer_.reached(state_, constraints_, true);
@@ -94,12 +96,12 @@ void TimeSteps::begin() {
 void TimeSteps::take_step() {
   const Constraints::Prescribed start = constraints_.prescribed();
   State end;
-  for (int cuts = 0;; ++cuts) {
+  for (;;) {
     end = state_;
     auto failure = attempt(end);
     if (!failure && !is_too_long(end)) break;
     constraints_.set(start);
-    shorten(failure.value_or(""), cuts);
+    shorten(failure.value_or("its steps take too much of the energy"));
   }
   show(state_, end, start);
   accept(std::move(end));
@@ -133,10 +135,10 @@ bool TimeSteps::is_too_long(const State& end) {
   return !settings_.step && taken_ > settings_.step_tolerance;
 }
 
-void TimeSteps::shorten(const std::string& failure, int cuts) {
-  if (cuts == kMostCuts)
-    fail(state_, fmt::format("{} cannot go on: {}, with steps of {:.3g} s", method_->name(),
-                             failure.empty() ? "its steps take too much of the energy" : failure, wanted_));
+void TimeSteps::shorten(const std::string& failure) {
+  if (0.5 * leg_.step < least_)
+    fail(state_,
+         fmt::format("{} cannot go on: {}, with steps of {:.3g} s", method_->name(), failure, wanted_));
   wanted_ = 0.5 * leg_.step;
   good_ = 0;
   plan();
@@ -254,7 +256,7 @@ double TimeSteps::rounding_energy() const {
 void TimeSteps::check_energy() const {
   const EnergyBalance& energy = state_.energy;
   // A bond that breaks does so at the first step beyond its limit: its energy is uncertain by all of it.
-  if (!model_.conservative() || energy.largest <= rounding_energy() ||
+  if (!model_.conservative() || !method_->never_adds_energy() || energy.largest <= rounding_energy() ||
       energy.error() * energy.largest <= kRunaway * energy.largest + energy.dissipated)
     return;
   fail(state_, fmt::format("the energy runs away: {:.1f} % of it came from nowhere", 100 * energy.error()));

@@ -50,6 +50,8 @@ class TimeStepMethod {
   /// Force evaluations and iterations of the last step.
   [[nodiscard]] virtual long evaluations() const = 0;
   [[nodiscard]] virtual long iterations() const = 0;
+  /// Whether it takes energy from any motion, and never adds some but for the error of its steps.
+  [[nodiscard]] virtual bool never_adds_energy() const = 0;
   /// For messages.
   [[nodiscard]] virtual std::string name() const = 0;
   virtual void save(Snapshot& to) const = 0;
@@ -76,6 +78,7 @@ class TimeSteps {
     each("time_steps.force", self.force_);
     each("time_steps.rest_energy", self.rest_energy_);
     each("time_steps.wanted", self.wanted_);
+    each("time_steps.least", self.least_);
     each("time_steps.good", self.good_);
     Leg::each_member(self.leg_, "time_steps.leg", each);
     Schedule::each_member(self.outputs_, "time_steps.outputs", each);
@@ -90,7 +93,7 @@ class TimeSteps {
   void take_step();
   [[nodiscard]] std::optional<std::string> attempt(State& end);
   [[nodiscard]] bool is_too_long(const State& end);
-  void shorten(const std::string& failure, int cuts);
+  void shorten(const std::string& failure);
   void lengthen();
   void accept(State end);
   void show(const State& from, const State& end, const Constraints::Prescribed& start);
@@ -114,7 +117,7 @@ class TimeSteps {
   std::vector<double> mass_;
   std::vector<double> internal_, force_;  // in the state: of the model, and all on the free entries (N)
   double rest_energy_ = 0;                // that the model has without displacement (J)
-  double wanted_ = 0;                     // step (s)
+  double wanted_ = 0, least_ = 0;         // step (s)
   double taken_ = 0;                      // by the method in the last step, over the energy of the motion
   long good_ = 0;                         // steps since the last one that was too long
   Leg leg_;

@@ -68,7 +68,7 @@ MISTAKES = [
     ("negative", PLAIN, '"6 MPa"', '"-6 MPa"', "youngs_modulus", "above 0"),
     ("no number", PLAIN, '"6 MPa"', "nan", "youngs_modulus", "finite"),
     ("unknown law", PLAIN, '"neo-hookean"', '"neohookean"', "law =", 'did you mean "neo-hookean"?'),
-    ("unknown method", PLAIN, '"dynamic-relaxation"', '"newtons"', "method =", "dynamic-relaxation, newton, verlet"),
+    ("unknown method", PLAIN, '"dynamic-relaxation"', '"newtons"', "method =", "dynamic-relaxation, newton, verlet, space-time, generalised-alpha"),
     ("stretch to and fro", PLAIN, "[1.2, 1.4]", "[1.4, 1.2]", "stretch = [", "1.2 comes after 1.4"),
     ("a bracket", PLAIN, '"(stretch - 1)*x"', '"(stretch - 1*x"', "displacement", "parenthesis"),
     ("unknown variable", PLAIN, '"(stretch - 1)*x"', '"(strech - 1)*x"', "displacement", 'did you mean "stretch"?'),
