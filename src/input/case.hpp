@@ -190,22 +190,38 @@ struct InitialInput {                                  // [[initial]]
   Location at;
 };
 
-struct SolverInput {   // [solver]
-  std::string method;  // "dynamic-relaxation", "newton" or "verlet"
+struct SolverInput {  // [solver]
+  // "dynamic-relaxation", "newton"; in time "verlet", "space-time" or "generalised-alpha"
+  std::string method;
   // statics
   std::vector<double> stretch;  // output states, strictly monotone away from 1
   double increment = 0.1;       // largest step of the stretch
-  double tolerance = 1e-5;      // free force / reaction
-  int max_iterations = 20000;   // per load step; then the step is cut
-  // Verlet
+  // Free force / reaction, default 1e-5; of implicit motion residual and increment over their scales, 1e-8.
+  std::optional<double> tolerance;
+  int max_iterations = 20000;  // per load step; then the step is cut
+  // in time
   double until = 0;  // s
   Location until_at;
-  std::optional<double> step;  // s; default: from the stable step
+  std::optional<double> step;  // s; default: from the stable step, or by the velocity's jumps
   double safety = 0.8;
-  double damping = 0;             // 1/s
-  std::string start = "initial";  // or "equilibrium"
-  double start_tolerance = 1e-5;  // as `tolerance`, of that equilibrium
+  double damping = 0;                // 1/s
+  std::string start = "initial";     // or "equilibrium"
+  double start_tolerance = 1e-5;     // as `tolerance`, of that equilibrium
+  std::string scheme = "two-field";  // of space-time; or "single-field"
+  int gauss_points = 3;              // of the latter
+  double step_tolerance = 1e-4;      // of space-time: energy of the jumps / energy of the motion
+  double spectral_radius = 0.8;      // of generalised-alpha
   Location at;
+
+  static const std::vector<std::string>& methods_in_time() {
+    static const std::vector<std::string> all{"verlet", "space-time", "generalised-alpha"};
+    return all;
+  }
+  [[nodiscard]] bool is_explicit() const { return method == "verlet"; }
+  [[nodiscard]] bool in_time() const { return is_explicit() || is_implicit_motion(); }
+  [[nodiscard]] bool is_implicit_motion() const {
+    return method == "space-time" || method == "generalised-alpha";
+  }
 };
 
 struct ContactInput {    // [contact]: points without a bond repel
@@ -241,8 +257,8 @@ struct CheckpointInterval {
 };
 
 struct OutputInput {                    // [output]
-  std::optional<double> every;          // s (Verlet); statics: at each stretch
-  std::optional<double> history_every;  // s (Verlet)
+  std::optional<double> every;          // s (in time); statics: at each stretch
+  std::optional<double> history_every;  // s (in time)
   std::vector<std::string> fields = {"displacement", "damage", "strain_energy_density", "nominal_stress"};
   CheckpointInterval checkpoint_every;
   Location at;

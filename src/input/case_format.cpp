@@ -39,9 +39,15 @@ using kind::Texts;
 const std::string relaxation = "dynamic-relaxation";
 const std::string newton = "newton";
 const std::string verlet = "verlet";
+const std::string space_time = "space-time";
+const std::string generalised_alpha = "generalised-alpha";
 
 When method(const Case& c, const std::string& value) {
   return {"solver.method", &c.solver.method, {value}};
+}
+
+When in_time(const Case& c) {
+  return {"solver.method", &c.solver.method, SolverInput::methods_in_time()};
 }
 
 // Two of a kind must not share a name: probes name columns, sets name regions.
@@ -131,10 +137,10 @@ Format describe(LoadInput& load, const Case& c) {
                        "body_force may do without: it then acts on the whole body."},
                    Key{"displacement", Components{&load.displacement},
                        "One entry per direction: \"free\" or a length, a formula of x, y, z and stretch "
-                       "(statics) or t (Verlet)."},
+                       "(statics) or t (in time)."},
                    Key{"velocity", Components{&load.velocity, dimension::velocity},
                        "The same for a velocity, from zero displacement at time 0 on."}
-                       .applies(method(c, verlet)),
+                       .applies(in_time(c)),
                    Key{"traction", Components{&load.traction, dimension::pressure},
                        "The same for a force per undeformed area of an edge; \"free\" and 0 are no force."},
                    Key{"body_force", Components{&load.body_force, force_density},
@@ -193,14 +199,17 @@ void check_count(const char* key, double count, const char* what, double most, c
 
 Format describe(SolverInput& s) {
   const When in_statics{"method", &s.method, {relaxation, newton}};
-  const When in_time{"method", &s.method, {verlet}};
+  const When in_time{"method", &s.method, SolverInput::methods_in_time()};
+  const When by_verlet{"method", &s.method, {verlet}}, in_slabs{"method", &s.method, {space_time}};
   const auto time = [](auto& to) { return Quantity{&to, dimension::time, positive}; };
   return {
       .doc = "How the body is brought to its states.",
       .at = &s.at,
       .keys =
-          {Key{"method", Text{&s.method, {relaxation, newton, verlet}},
-               "Static states by relaxation or by Newton's method, or motion by explicit steps."}
+          {Key{"method", Text{&s.method, {relaxation, newton, verlet, space_time, generalised_alpha}},
+               "Static states by relaxation or by Newton's method; motion by explicit steps, by space-time "
+               "slabs or "
+               "by the generalised-alpha method."}
                .required(),
            Key{"stretch", Quantities{&s.stretch, dimension::none, positive},
                "Output states, moving away from 1."}
@@ -210,37 +219,64 @@ Format describe(SolverInput& s) {
                .applies(in_statics)
                .otherwise("0.1"),
            Key{"tolerance", Quantity{&s.tolerance, dimension::none, fraction},
-               "L2 norm of the free forces over that of the constraint forces, at which a state has "
-               "converged."}
-               .applies(in_statics)
-               .otherwise("1e-5"),
+               "Statics: L2 norm of the free forces over that of the constraint forces, at which a state has "
+               "converged; 1e-5 unless given. Space-time and generalised-alpha: norms of residual and "
+               "increment over "
+               "those of forces and motion; 1e-8 unless given."}
+               .applies(When{"method", &s.method, {relaxation, newton, space_time, generalised_alpha}}),
            Key{"max_iterations", Integer{&s.max_iterations, 1},
                "Of relaxation, per load step; beyond it the step is cut. Newton's method, which relaxation "
                "stands in for where it fails, has 30."}
                .applies(in_statics)
                .otherwise("20000"),
            Key{"until", time(s.until), "End of the run."}.applies(in_time).required(),
-           Key{"step", time(s.step), "Time step; from the stable step unless given."}.applies(in_time),
+           Key{"step", time(s.step),
+               "Time step. Unless given, Verlet takes it from the stable step, and space-time slabs from "
+               "step_tolerance."}
+               .applies(in_time)
+               .required_if(When{"method", &s.method, {generalised_alpha}}),
            Key{"safety", Quantity{&s.safety, dimension::none, fraction},
                "Part of the stable step that is used."}
-               .applies(in_time)
+               .applies(by_verlet)
                .otherwise("0.8"),
            Key{"damping", Quantity{&s.damping, rate, not_negative},
                "Force against the velocity, per mass and velocity: a free motion decays as exp(-damping t)."}
-               .applies(in_time)
+               .applies(by_verlet)
                .otherwise("0"),
            Key{"start", Text{&s.start, {"initial", "equilibrium"}},
                "The undeformed state or what [[initial]] says, or the equilibrium under the loads of time 0, "
                "by dynamic relaxation, with velocity 0."}
-               .applies(in_time)
+               .applies(by_verlet)
                .otherwise("\"initial\""),
            Key{"start_tolerance", Quantity{&s.start_tolerance, dimension::none, fraction},
                "L2 norm of the free forces over those of constraints and loads, at which that equilibrium is "
                "reached."}
                .applies(When{"start", &s.start, {"equilibrium"}})
-               .otherwise("1e-5")},
+               .otherwise("1e-5"),
+           Key{"scheme", Text{&s.scheme, {"two-field", "single-field"}},
+               "Of the slabs: displacements and velocities that both jump, which damps what the step does "
+               "not "
+               "resolve, or continuous displacements, which keep an energy law."}
+               .applies(in_slabs)
+               .otherwise("\"two-field\""),
+           Key{"gauss_points", Integer{&s.gauss_points, 2},
+               "In time, of a single-field slab, 2 to 6; more for large changes of stretch in a step."}
+               .applies(When{"scheme", &s.scheme, {"single-field"}})
+               .otherwise("3"),
+           Key{"step_tolerance", Quantity{&s.step_tolerance, dimension::none, fraction},
+               "Where no step is given: energy of the jumps at a slab's start over that of the motion, above "
+               "which "
+               "the step is halved; it grows where there is much less."}
+               .applies(in_slabs)
+               .otherwise("1e-4"),
+           Key{"spectral_radius", Quantity{&s.spectral_radius, dimension::none, {.low = 0, .high = 1}},
+               "Amplification of motions far faster than the step, 0 to 1; 1 is Newmark's average "
+               "acceleration."}
+               .applies(When{"method", &s.method, {generalised_alpha}})
+               .otherwise("0.8")},
       .finish = [&s](const Check& check) {
         check_stretch(s.stretch, check);
+        if (s.gauss_points > 6) check.fail("gauss_points", "expected 2 to 6");
         if (s.stretch.empty()) {
           s.until_at = check.at("until");
           if (s.step) check_count("step", s.until / *s.step, "time steps", kMostSteps, check);
@@ -260,10 +296,10 @@ Format describe(OutputInput& output, const Case& c) {
       .at = &output.at,
       .keys =
           {Key{"every", time(output.every), "Time between output states; start and end only unless given."}
-               .applies(method(c, verlet)),
+               .applies(in_time(c)),
            Key{"history_every", time(output.history_every),
                "Time between rows of the history; `every` unless given."}
-               .applies(method(c, verlet)),
+               .applies(in_time(c)),
            Key{"fields",
                Texts{&output.fields,
                      {"displacement", "damage", "strain_energy_density", "nominal_stress", "weight_minimum",
@@ -273,7 +309,7 @@ Format describe(OutputInput& output, const Case& c) {
                "point belongs to, 1 the largest."}
                .otherwise(R"(["displacement", "damage", "strain_energy_density", "nominal_stress"])"),
            Key{"checkpoint_every", Interval{&output.checkpoint_every},
-               "Wall time, or time steps (Verlet) or iterations (statics), between checkpoints, "
+               "Wall time, or time steps or iterations (statics), between checkpoints, "
                "from which `riven run --resume` goes on."}
                .otherwise("\"5 min\"")},
       .finish = [&output, &c](const Check& check) {
@@ -367,7 +403,7 @@ void check_metric(ExpectInput& e, const Check& check) {
 }
 
 Format describe(ExpectInput& e, const Case& c) {
-  const bool in_time = c.solver.method == verlet;
+  const bool moving = c.solver.in_time();
   return {.doc = "A published or reference result, which `riven verify` compares; only references decide.",
           .at = &e.at,
           .keys = {Key{"metric", Text{&e.metric}, "A name in the metrics of summary.json."},
@@ -383,7 +419,7 @@ Format describe(ExpectInput& e, const Case& c) {
                    Key{"exclude_within", Quantity{&e.exclude_within, dimension::length, not_negative},
                        "Field points this near to a defect do not count."}
                        .otherwise("0"),
-                   Key{"at", Quantity{&e.state, in_time ? dimension::time : dimension::none, any_number},
+                   Key{"at", Quantity{&e.state, moving ? dimension::time : dimension::none, any_number},
                        "The state: a stretch, or a time with unit; unless given the final one (metric) or "
                        "all (field)."},
                    Key{"kind", Text{&e.kind, {"published", "reference"}},
@@ -472,7 +508,7 @@ Format describe(Case& c) {
            Key{"initial", tables(c.initials, [&c](InitialInput& i, std::size_t) { return describe(i, c); }),
                "Initial conditions. Relaxation starts undeformed, since its states do not depend on where "
                "it starts."}
-               .applies(method(c, verlet)),
+               .applies(in_time(c)),
            Key{"contact",
                Table{[&c] { return describe(c.contact, c); }, [&c] { return c.contact.has_value(); }},
                "Contact of the body with itself."}

@@ -32,8 +32,9 @@ std::vector<Key> crack_probe_keys(ProbeInput& p) {
 }
 
 void check_crack_probe(const ProbeInput& probe, const Case& c, const Check& check) {
-  if (probe.kind == "crack-speed" && c.solver.method != "verlet")
-    check.fail("kind", "a speed needs a run in time, by the solver \"verlet\"; expected \"crack-length\"");
+  if (probe.kind == "crack-speed" && !c.solver.in_time())
+    check.fail("kind",
+               "a speed needs a run in time, such as by the solver \"verlet\"; expected \"crack-length\"");
 }
 
 }  // namespace riven

@@ -124,7 +124,7 @@ Format describe(MaterialInput& m, const Case& c) {
           "I2), `correspondence` any; in space and in plane strain a rubber needs `bulk_modulus` there."}
           .required(),
       Key{"density", Quantity{&m.density, dimension::density, positive}, "Needed where inertia counts."}
-          .required_if(When{"solver.method", &c.solver.method, {"verlet"}})};
+          .required_if(When{"solver.method", &c.solver.method, SolverInput::methods_in_time()})};
   for (const LawKey& key : law_keys()) keys.push_back(key_of(key, m));
   keys.push_back(Key{"bulk_modulus", Quantity{&m.bulk_modulus, dimension::pressure, positive},
                      "Makes a rubber nearly incompressible; without it, it keeps its volume."}

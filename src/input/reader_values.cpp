@@ -191,7 +191,7 @@ ComponentInput Reader::component(const kind::Components& of, const toml::node& n
       string_of(node, origin, fmt::format("\"free\", 0 or {} such as \"{}\"", named(of.dimension), sample));
   if (text == "free") return {};
   std::vector<std::string> variables{"x", "y", "z"};
-  if (!of.at_start) variables.emplace_back(case_.solver.method == "verlet" ? "t" : "stretch");
+  if (!of.at_start) variables.emplace_back(case_.solver.in_time() ? "t" : "stretch");
   return {parse_formula(text, of.dimension, symbols(std::move(variables)), origin)};
 }
 

@@ -3,17 +3,11 @@
 #include <cstddef>
 #include <memory>
 #include <span>
-#include <stdexcept>
 
+#include "linalg/factor_failure.hpp"
 #include "linalg/symmetric_matrix.hpp"
 
 namespace riven {
-
-/// A factorisation that could not be made: memory, in general.
-class FactorFailure : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// Cholesky factors of a sparse matrix, by MUMPS (Amestoy et al. 2001): an ordering once for a pattern, then
 /// factors and solutions for the values that it has. Serial, so results have the same bits on any number of
@@ -38,8 +32,8 @@ class SparseCholesky {
   void solve(std::span<double> x);
 
  private:
-  struct Mumps;
-  std::unique_ptr<Mumps> mumps_;
+  struct Real;
+  std::unique_ptr<Real> mumps_;
 };
 
 }  // namespace riven

@@ -42,6 +42,12 @@ void Constraints::set_parameter(double parameter) {
   parameter_ = parameter;
 }
 
+void Constraints::set(const Prescribed& to) {
+  parameter_ = to.parameter;
+  travelled_ = to.travelled;
+  offset_ = to.offset;
+}
+
 void Constraints::apply(std::span<double> u) const {
   std::size_t n = 0;
   for (const Constraint& constraint : prescribed_) u[constraint.slave] = offset_[n++];

@@ -58,6 +58,13 @@ class Constraints {
   /// parameter before, by Simpson's rule; at parameter 0 they have moved nothing.
   void set_parameter(double parameter);
   [[nodiscard]] double parameter() const { return parameter_; }
+  /// What the last `set_parameter` gave, to be put back: solvers that go to and fro in time evaluate it once.
+  struct Prescribed {
+    double parameter = 0;
+    std::vector<double> travelled, offset;  // m
+  };
+  [[nodiscard]] Prescribed prescribed() const { return {parameter_, travelled_, offset_}; }
+  void set(const Prescribed& to);
   /// Makes a state obey the constraints.
   void apply(std::span<double> u) const;
   /// Takes the internal force out of the slaves: adds it to their masters where the chain rule holds, keeps

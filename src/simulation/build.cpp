@@ -33,7 +33,7 @@ Simulation build_simulation(const Case& input) {
   check_memory(input, available_memory());
   Simulation simulation;
   simulation.input = input;
-  simulation.parameter = input.solver.method == "verlet" ? Parameter::time : Parameter::stretch;
+  simulation.parameter = input.solver.in_time() ? Parameter::time : Parameter::stretch;
   Body body = make_body(input);
   for (const SetInput& set : input.sets) simulation.sets.push_back(make_set(set, input, body));
   mark_points(input, simulation.sets, body);

@@ -53,7 +53,7 @@ double body_points(const GeometryInput& geometry) {
   return points;
 }
 
-/// What the sparse tangent of Newton's method takes.
+/// What the sparse tangent of Newton's method, or of implicit steps, takes.
 struct Factors {
   double bytes = 0, seconds = 0;
 };
@@ -63,7 +63,8 @@ struct Factors {
 /// cubes of 216 to 5832 points, with horizons of 1.5 to 4 spacings: within a third, on cubes within a factor
 /// of two.
 Factors factors(const Case& input) {
-  if (input.solver.method != "newton") return {};
+  const bool complex = input.solver.method == "space-time";  // numbers twice as long, products of four
+  if (input.solver.method != "newton" && !input.solver.is_implicit_motion()) return {};
   constexpr double kFlopsPerSecond = 4e10, kEntriesPerSecond = 2e8;  // of one core
   const GeometryInput& geometry = input.geometry;
   const double points = body_points(geometry), horizon = geometry.horizon / geometry.spacing;
@@ -76,7 +77,8 @@ Factors factors(const Case& input) {
                                 : 2.1e3 * std::pow(reach, 1.5) * std::pow(points / 1e4, 0.2);
   const double flops = in_space ? 6e8 * std::pow(reach, 2) * std::pow(points / 1728, 2)
                                 : 2.2e8 * std::pow(reach, 2.5) * std::pow(points / 1e4, 1.6);
-  return {points * bytes, flops / kFlopsPerSecond + blocks * block * block / kEntriesPerSecond};
+  return {(complex ? 2 : 1) * points * bytes,
+          (complex ? 4 : 1) * flops / kFlopsPerSecond + blocks * block * block / kEntriesPerSecond};
 }
 
 /// The smallest spacing (m), with horizon in proportion, whose run fits; two digits, rounded up.
@@ -220,7 +222,14 @@ TimeEstimate time_estimate(const Simulation& simulation) {
   TimeEstimate estimate;
   estimate.evaluation_s = kBesides * measured_evaluation(model);
   const SolverInput& solver = simulation.input.solver;
-  if (simulation.parameter == Parameter::time) {
+  if (solver.is_implicit_motion()) {
+    constexpr double kIterations = 4;         // of a step, with two forces each
+    constexpr double kStepsOfAMotion = 1000;  // if none is given
+    estimate.unit = "iterations";
+    estimate.evaluation_s = factors(simulation.input).seconds / kIterations + 2 * estimate.evaluation_s;
+    estimate.evaluations =
+        kIterations * std::ceil(solver.until / solver.step.value_or(solver.until / kStepsOfAMotion));
+  } else if (simulation.parameter == Parameter::time) {
     const std::vector<double> rest(model.dofs(), 0.0);
     const double step = solver.safety * stable_step(model, *simulation.constraints, rest);
     estimate.evaluations = std::ceil(solver.until / solver.step.value_or(step));

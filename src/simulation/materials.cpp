@@ -30,7 +30,7 @@ struct Stretches {
 };
 
 Stretches asked_for(const Case& input) {
-  if (input.solver.method == "verlet") return {};
+  if (input.solver.in_time()) return {};
   const auto [low, high] = std::minmax_element(input.solver.stretch.begin(), input.solver.stretch.end());
   Stretches stretches{std::min(*low, 1.0), std::max(*high, 1.0), {}};
   stretches.why = fmt::format("{:g} to {:g} by solver.stretch", stretches.low, stretches.high);

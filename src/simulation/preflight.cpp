@@ -18,11 +18,11 @@ namespace riven {
 namespace {
 
 double last_state(const Case& input) {
-  return input.solver.method == "verlet" ? input.solver.until : input.solver.stretch.back();
+  return input.solver.in_time() ? input.solver.until : input.solver.stretch.back();
 }
 
 std::string states_text(const Case& input) {
-  if (input.solver.method == "verlet") {
+  if (input.solver.in_time()) {
     const double every = input.output.every.value_or(input.solver.until);
     return fmt::format("0 and every {:g} s to {:g} s", every, input.solver.until);
   }
@@ -34,7 +34,7 @@ std::string states_text(const Case& input) {
 
 /// Whether the run goes past a state, so that an expectation there was meant to be met.
 bool passes(const Case& input, double state) {
-  const double start = input.solver.method == "verlet" ? 0 : 1, end = last_state(input);
+  const double start = input.solver.in_time() ? 0 : 1, end = last_state(input);
   return (state - start) * (end - state) >= 0 && state != start;
 }
 
@@ -93,7 +93,7 @@ void check_metric(const ExpectInput& expect, const std::vector<HistoryColumn>& c
 void check_step(const Simulation& simulation) {
   constexpr double kMostSteps = 1e9;
   const SolverInput& solver = simulation.input.solver;
-  if (simulation.parameter != Parameter::time) return;
+  if (!solver.is_explicit()) return;
   std::vector<double> start = simulation.initial_u;
   start.resize(simulation.model->dofs());
   simulation.constraints->set_parameter(0);
@@ -113,11 +113,13 @@ void check_step(const Simulation& simulation) {
 
 void check_solver(const Simulation& simulation) {
   const Case& input = simulation.input;
-  if (input.solver.method != "newton" || simulation.model->tangent_parts() > 0) return;
-  throw InputError(input.solver.at,
-                   fmt::format("solver.method: the model \"{}\" has no tangent for \"newton\"; expected "
+  const SolverInput& solver = input.solver;
+  const bool needs_tangent = solver.method == "newton" || solver.is_implicit_motion();
+  if (!needs_tangent || simulation.model->tangent_parts() > 0) return;
+  throw InputError(solver.at,
+                   fmt::format("solver.method: the model \"{}\" has no tangent for \"{}\"; expected "
                                "\"dynamic-relaxation\" or \"verlet\"",
-                               input.model.kind));
+                               input.model.kind, solver.method));
 }
 
 /// Every field asked for must be one that the model has.
@@ -299,7 +301,7 @@ bool same_state(double a, double b) {
 
 bool reaches(const Case& input, double state) {
   const SolverInput& solver = input.solver;
-  if (solver.method != "verlet")
+  if (!solver.in_time())
     return std::any_of(solver.stretch.begin(), solver.stretch.end(),
                        [&](double s) { return same_state(s, state); });
   const double every = input.output.every.value_or(solver.until), count = std::round(state / every);

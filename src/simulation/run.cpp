@@ -19,15 +19,48 @@
 #include "simulation/recorder.hpp"
 #include "simulation/resume.hpp"
 #include "solver/dynamic_relaxation.hpp"
+#include "solver/generalised_alpha.hpp"
 #include "solver/newton.hpp"
+#include "solver/space_time.hpp"
 #include "solver/velocity_verlet.hpp"
 
 namespace riven {
 
 namespace {
 
+/// Of implicit motion, what its methods have in common.
+void fill(const Simulation& simulation, TimeStepSettings& settings) {
+  const SolverInput& in = simulation.input.solver;
+  const OutputInput& out = simulation.input.output;
+  settings.until = in.until;
+  settings.every = out.every.value_or(in.until);
+  settings.history_every = out.history_every.value_or(settings.every);
+  settings.step = in.step;
+  settings.tolerance = in.tolerance.value_or(settings.tolerance);
+  settings.step_tolerance = in.step_tolerance;
+  settings.initial_u = simulation.initial_u;
+  settings.initial_v = simulation.initial_v;
+  settings.external = simulation.external;
+}
+
+State move_implicitly(const Simulation& simulation, Observer& observer, const Snapshot* from) {
+  const SolverInput& in = simulation.input.solver;
+  if (in.method == "generalised-alpha") {
+    GeneralisedAlphaSettings settings;
+    fill(simulation, settings);
+    settings.spectral_radius = in.spectral_radius;
+    return generalised_alpha(*simulation.model, *simulation.constraints, settings, observer, from);
+  }
+  SpaceTimeSettings settings;
+  fill(simulation, settings);
+  settings.scheme = in.scheme == "single-field" ? SlabKind::single_field : SlabKind::two_field;
+  settings.gauss_points = static_cast<std::size_t>(in.gauss_points);
+  return march_slabs(*simulation.model, *simulation.constraints, settings, observer, from);
+}
+
 State solve(const Simulation& simulation, Observer& observer, const Snapshot* from) {
   const SolverInput& in = simulation.input.solver;
+  if (in.is_implicit_motion()) return move_implicitly(simulation, observer, from);
   if (simulation.parameter == Parameter::time) {
     const OutputInput& out = simulation.input.output;
     VelocityVerletSettings settings{.until = in.until, .step = in.step, .safety = in.safety};
@@ -43,7 +76,7 @@ State solve(const Simulation& simulation, Observer& observer, const Snapshot* fr
   }
   const LoadStepSettings settings{.targets = in.stretch,
                                   .increment = in.increment,
-                                  .tolerance = in.tolerance,
+                                  .tolerance = in.tolerance.value_or(LoadStepSettings{}.tolerance),
                                   .max_iterations = in.max_iterations,
                                   .external = simulation.external};
   const auto solve_statics = in.method == "newton" ? newton : relax;

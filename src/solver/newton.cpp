@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "base/parallel.hpp"
 #include "solver/dynamic_relaxation.hpp"
+#include "solver/norms.hpp"
 
 namespace riven {
 
@@ -25,14 +25,6 @@ constexpr int kHalvings = 8;
 constexpr double kLeastStrain = 1e-6;
 // A step overshoots if the force along it ends with more than this part of what it began with, turned round.
 constexpr double kOvershoot = 0.8;
-
-double norm(std::span<const double> v) {
-  return std::sqrt(ordered_sum_of(v.size(), [&](std::size_t i) { return v[i] * v[i]; }));
-}
-
-double dot(std::span<const double> a, std::span<const double> b) {
-  return ordered_sum_of(a.size(), [&](std::size_t i) { return a[i] * b[i]; });
-}
 
 }  // namespace
 

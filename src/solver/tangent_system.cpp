@@ -2,163 +2,38 @@
 
 #include <algorithm>
 
-#include "base/parallel.hpp"
-
 namespace riven {
 
-namespace {
-
-constexpr std::size_t kBatch = 128;  // parts of the tangent that are in memory at a time
-constexpr std::size_t kPiece = 4;    // of those, how many a thread takes
-// Rows are dealt to so many shares, whatever the number of threads: neighbours, which come in the same
-// blocks, to different ones.
-constexpr int kShares = 64;
-
-}  // namespace
-
-template <class Visit>
-void TangentSystem::for_each_batch(std::span<const double> u, const Visit& visit) const {
-  const std::size_t parts = model_.tangent_parts();
-  std::vector<TangentBlocks> pieces(kBatch / kPiece);
-  for (std::size_t first = 0; first < parts; first += kBatch) {
-    parallel_for(static_cast<std::ptrdiff_t>(pieces.size()), [&](std::ptrdiff_t n) {
-      TangentBlocks& piece = pieces[static_cast<std::size_t>(n)];
-      piece.begin.assign(1, 0);
-      piece.dofs.clear();
-      piece.values.clear();
-      const std::size_t begin = first + static_cast<std::size_t>(n) * kPiece;
-      if (begin < parts) model_.tangent(u, begin, std::min(begin + kPiece, parts), piece);
-    });
-    visit(pieces);
-  }
-}
-
-TangentSystem::TangentSystem(const Model& model, const Constraints& constraints, std::span<const double> u)
-    : model_(model), unknowns_(model.dofs()) {
-  number_unknowns(constraints.images(), u);
-  find_pattern(u);
-  cholesky_.analyse(matrix_);
-}
-
-void TangentSystem::number_unknowns(const std::vector<Constraints::Image>& images,
-                                    std::span<const double> u) {
-  std::vector<bool> used(unknowns_.size());
-  for_each_batch(u, [&](const std::vector<TangentBlocks>& pieces) {
-    for (const TangentBlocks& piece : pieces)
-      for (const std::size_t dof : piece.dofs)
-        if (images[dof].entry != Constraint::kNone) used[images[dof].entry] = true;
-  });
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    if (!used[i]) continue;
-    unknowns_[i].number = static_cast<int>(entries_.size());
-    entries_.push_back(i);
-  }
-  for (std::size_t i = 0; i < images.size(); ++i)
-    if (images[i].entry != Constraint::kNone)
-      unknowns_[i] = {unknowns_[images[i].entry].number, images[i].sign};
-}
-
-/// The rows of every block that belong to unknowns, ascending by their number.
-std::vector<std::vector<TangentSystem::Row>> TangentSystem::rows_of(
-    const std::vector<TangentBlocks>& pieces) const {
-  std::vector<std::vector<Row>> lists;
-  for (const TangentBlocks& piece : pieces)
-    for (std::size_t b = 0; b + 1 < piece.begin.size(); ++b) {
-      std::vector<Row>& rows = lists.emplace_back();
-      for (std::size_t n = piece.begin[b]; n < piece.begin[b + 1]; ++n) {
-        const Unknown unknown = unknowns_[piece.dofs[n]];
-        if (unknown.number >= 0) rows.push_back({unknown.number, n - piece.begin[b], unknown.sign});
-      }
-      std::stable_sort(rows.begin(), rows.end(),
-                       [](const Row& x, const Row& y) { return x.number < y.number; });
-    }
-  return lists;
-}
-
-/// Row i of the lower triangle: the unknowns up to i that share a block with it.
-void TangentSystem::find_pattern(std::span<const double> u) {
-  std::vector<std::vector<int>> rows(entries_.size());
-  for_each_batch(u, [&](const std::vector<TangentBlocks>& pieces) {
-    const std::vector<std::vector<Row>> lists = rows_of(pieces);
-    parallel_for(kShares, [&](std::ptrdiff_t share) {
-      std::vector<int> numbers, merged;
-      for (const std::vector<Row>& list : lists) {
-        numbers.clear();
-        for (const Row& row : list)
-          if (numbers.empty() || numbers.back() != row.number) numbers.push_back(row.number);
-        for (std::size_t n = 0; n < numbers.size(); ++n) {
-          if (numbers[n] % kShares != share) continue;
-          std::vector<int>& row = rows[static_cast<std::size_t>(numbers[n])];
-          merged.clear();
-          std::set_union(row.begin(), row.end(), numbers.begin(),
-                         numbers.begin() + static_cast<std::ptrdiff_t>(n + 1), std::back_inserter(merged));
-          if (merged.size() > row.size()) row = merged;
-        }
-      }
-    });
-  });
-  for (const std::vector<int>& row : rows) {
-    matrix_.column.insert(matrix_.column.end(), row.begin(), row.end());
-    matrix_.begin.push_back(matrix_.column.size());
-  }
-  matrix_.value.assign(matrix_.column.size(), 0.0);
-}
-
-void TangentSystem::assemble(std::span<const double> u) {
-  std::fill(matrix_.value.begin(), matrix_.value.end(), 0.0);
-  for_each_batch(u, [&](const std::vector<TangentBlocks>& pieces) {
-    const std::vector<std::vector<Row>> lists = rows_of(pieces);
-    parallel_for(kShares, [&](std::ptrdiff_t share) {
-      auto list = lists.begin();
-      for (const TangentBlocks& piece : pieces) {
-        const double* block = piece.values.data();
-        for (std::size_t b = 0; b + 1 < piece.begin.size(); ++b, ++list) {
-          const std::size_t size = piece.begin[b + 1] - piece.begin[b];
-          add(*list, block, size, static_cast<int>(share));
-          block += size * size;
-        }
-      }
-    });
-  });
-}
-
-/// Adds the rows of one share: every row belongs to one thread, and its terms come in the order of the
-/// blocks.
-void TangentSystem::add(const std::vector<Row>& rows, const double* block, std::size_t size, int share) {
-  for (const Row& row : rows) {
-    if (row.number % kShares != share) continue;
-    std::size_t place = matrix_.begin[static_cast<std::size_t>(row.number)];
-    for (const Row& column : rows) {
-      if (column.number > row.number) break;
-      while (matrix_.column[place] < column.number) ++place;
-      matrix_.value[place] += row.sign * column.sign * block[row.place * size + column.place];
-    }
-  }
+TangentSystem::TangentSystem(const Model& model, const Constraints& constraints, std::span<const double> u,
+                             std::span<const double> mass)
+    : tangent_(model, constraints, u, mass) {
+  cholesky_.analyse(tangent_.matrix());
 }
 
 bool TangentSystem::factor(double shift, std::span<const double> diagonal) {
-  std::vector<double> unshifted(entries_.size());
-  const auto own = [this](std::size_t i) -> double& { return matrix_.value[matrix_.begin[i + 1] - 1]; };
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    unshifted[i] = own(i);
-    own(i) += shift * diagonal[entries_[i]];
+  const std::span<const std::size_t> entries = tangent_.entries();
+  std::vector<double> unshifted(entries.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    unshifted[i] = tangent_.diagonal(i);
+    tangent_.diagonal(i) += shift * diagonal[entries[i]];
   }
-  const bool definite = cholesky_.factor(matrix_);
-  for (std::size_t i = 0; i < entries_.size(); ++i) own(i) = unshifted[i];
+  const bool definite = cholesky_.factor(tangent_.matrix());
+  for (std::size_t i = 0; i < entries.size(); ++i) tangent_.diagonal(i) = unshifted[i];
   return definite;
 }
 
 void TangentSystem::solve(std::span<const double> force, std::span<double> increment) {
-  std::vector<double> x(entries_.size());
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] = force[entries_[i]];
+  const std::span<const std::size_t> entries = tangent_.entries();
+  std::vector<double> x(entries.size());
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = force[entries[i]];
   cholesky_.solve(x);
   std::fill(increment.begin(), increment.end(), 0.0);
-  for (std::size_t i = 0; i < x.size(); ++i) increment[entries_[i]] = x[i];
+  for (std::size_t i = 0; i < x.size(); ++i) increment[entries[i]] = x[i];
 }
 
 double TangentSystem::bytes() const {
   return cholesky_.bytes() +
-         static_cast<double>(matrix_.column.size()) * (2 * sizeof(double) + 3 * sizeof(int));
+         static_cast<double>(tangent_.matrix().column.size()) * (2 * sizeof(double) + 3 * sizeof(int));
 }
 
 }  // namespace riven

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "solver/dynamic_relaxation.hpp"
+#include "solver/time_schedule.hpp"
 #include "solver/watchdog.hpp"
 #include "solver/work.hpp"
 
@@ -20,21 +21,6 @@ constexpr long kLeastEstimateInterval = 5, kMostEstimateInterval = 100;  // step
 // run is lost.
 constexpr double kRunaway = 0.1;
 constexpr double kMuchShorter = 0.95;  // stable step over the one before: it is falling
-
-/// Steps of equal length that end at a time at which something is written, exactly.
-struct Leg {
-  double begin = 0, end = 0, step = 0;  // s
-  long steps = 0, done = 0;
-
-  template <class Self, class Each>
-  static void each_member(Self& self, const Each& each) {
-    each("verlet.leg.begin", self.begin);
-    each("verlet.leg.end", self.end);
-    each("verlet.leg.step", self.step);
-    each("verlet.leg.steps", self.steps);
-    each("verlet.leg.done", self.done);
-  }
-};
 
 /// How fast time goes on: by whole steps, or by parts of them while bonds break too late.
 class Pace {
@@ -62,27 +48,6 @@ class Pace {
   double most_excess_;
   int halvings_ = 0, quiet_ = 0;
   bool changed_ = false;
-};
-
-/// Times at which something is written: multiples of an interval, and the end.
-class Schedule {
- public:
-  Schedule(double interval, double end) : interval_(interval), end_(end) {}
-  template <class Self, class Each>
-  static void each_member(Self& self, const std::string& name, const Each& each) {
-    each(name + ".count", self.count_);
-  }
-  [[nodiscard]] double next() const { return std::min(static_cast<double>(count_) * interval_, end_); }
-  /// Whether `time` is one of them; if so, moves on to the next.
-  bool due(double time) {
-    if (time < next() * (1 - 1e-12)) return false;
-    ++count_;
-    return true;
-  }
-
- private:
-  double interval_, end_;
-  long count_ = 1;
 };
 
 class Verlet {
@@ -128,7 +93,7 @@ class Verlet {
     each("verlet.next_estimate", self.next_estimate_);
     each("verlet.estimate_interval", self.estimate_interval_);
     each("verlet.rest_energy", self.rest_energy_);
-    Leg::each_member(self.leg_, each);
+    Leg::each_member(self.leg_, "verlet.leg", each);
     Pace::each_member(self.pace_, each);
     Schedule::each_member(self.outputs_, "verlet.outputs", each);
     Schedule::each_member(self.history_, "verlet.history", each);
@@ -199,19 +164,14 @@ class Verlet {
 
   /// Steps from here to the next time at which something is written.
   void plan() {
-    leg_.begin = state_.parameter;
-    leg_.end = std::min(outputs_.next(), history_.next());
-    const double left = leg_.end - leg_.begin;
-    leg_.steps = std::max(1L, static_cast<long>(std::ceil(left / (pace_.part() * step_) - 1e-9)));
-    leg_.step = left / static_cast<double>(leg_.steps);
-    leg_.done = 0;
+    leg_ = Leg::between(state_.parameter, std::min(outputs_.next(), history_.next()), pace_.part() * step_);
   }
 
   /// Every so many steps the stable step is estimated again and the body looked at.
   void take_step() {
+    const bool last = leg_.done + 1 == leg_.steps, look = state_.steps + 1 == next_estimate_;
+    step(leg_.step, leg_.next());
     ++leg_.done;
-    const bool last = leg_.done == leg_.steps, look = state_.steps + 1 == next_estimate_;
-    step(leg_.step, last ? leg_.end : leg_.begin + static_cast<double>(leg_.done) * leg_.step);
     if (look) look_around();
     if (last) write();
     if ((look || last || pace_.has_changed()) && unfinished()) plan();

@@ -33,6 +33,8 @@ kind = "largest"
 of = "swing"
 gives = "time"
 """
+SLABS = replaced(replaced(MARCHED, "points = [12, 12]", "points = [10, 10]"), 'method = "verlet"',
+                 'method = "space-time"\nstep = "0.5 ms"')
 # About a second, so that it can be interrupted on its way.
 SLOW = replaced(replaced(HOLE, "points = [20, 20]", "points = [40, 40]"), "stretch = [1.2, 1.4]",
                 "stretch = [1.001, 1.5]\nincrement = 0.03")
@@ -79,7 +81,7 @@ class Killed(ResumeTest):
     def test_fifty_runs_killed_at_any_moment(self):
         luck = random.Random(5)
         cases = {}
-        for name, text in {"relaxed": RELAXED, "marched": MARCHED, "impact": IMPACT}.items():
+        for name, text in {"relaxed": RELAXED, "marched": MARCHED, "impact": IMPACT, "slabs": SLABS}.items():
             words = ["run", self.write(f"{name}.toml", text), "--checkpoint-every", "12 steps", "--threads", 1]
             begin = time.monotonic()
             self.command(*words, "-o", f"{name}-whole")

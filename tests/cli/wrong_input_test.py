@@ -29,6 +29,8 @@ LPS = replaced(replaced(MOVING, 'law = "neo-hookean"', 'law = "linear-elastic"')
 CORRESPONDENCE = PLAIN + '\n[model]\nkind = "correspondence"\n'
 STATIC_PMB = replaced(PLAIN, 'law = "neo-hookean"', 'law = "linear-elastic"') + '\n[model]\nkind = "pmb"\n'
 
+SLABS = replaced(PMB, 'method = "verlet"', 'method = "space-time"')
+BOND_MOVING = MOVING + '\n[model]\nkind = "membrane-bond"\nloading = "planar"\nvariant = "published"\n'
 BOND = PLAIN + '\n[model]\nkind = "membrane-bond"\nloading = "planar"\nvariant = "published"\n'
 SET = """
 [set.{name}]
@@ -68,7 +70,7 @@ MISTAKES = [
     ("negative", PLAIN, '"6 MPa"', '"-6 MPa"', "youngs_modulus", "above 0"),
     ("no number", PLAIN, '"6 MPa"', "nan", "youngs_modulus", "finite"),
     ("unknown law", PLAIN, '"neo-hookean"', '"neohookean"', "law =", 'did you mean "neo-hookean"?'),
-    ("unknown method", PLAIN, '"dynamic-relaxation"', '"newtons"', "method =", "dynamic-relaxation, newton, verlet"),
+    ("unknown method", PLAIN, '"dynamic-relaxation"', '"newtons"', "method =", "dynamic-relaxation, newton, verlet, space-time, generalised-alpha"),
     ("stretch to and fro", PLAIN, "[1.2, 1.4]", "[1.4, 1.2]", "stretch = [", "1.2 comes after 1.4"),
     ("a bracket", PLAIN, '"(stretch - 1)*x"', '"(stretch - 1*x"', "displacement", "parenthesis"),
     ("unknown variable", PLAIN, '"(stretch - 1)*x"', '"(strech - 1)*x"', "displacement", 'did you mean "stretch"?'),
@@ -137,6 +139,19 @@ MISTAKES = [
      "[[inclusion]]", 'the model "correspondence" has no rigid inclusions'),
     ("influence of springs", PMB, 'kind = "pmb"', 'kind = "pmb"\ninfluence = "constant"', "influence",
      'it belongs to kind = "lps"'),
+    ("slabs without a tangent", BOND_MOVING, 'method = "verlet"', 'method = "space-time"', "[solver]",
+     'the model "membrane-bond" has no tangent for "space-time"; expected "dynamic-relaxation" or "verlet"'),
+    ("generalised-alpha without a tangent", BOND_MOVING, 'method = "verlet"', 'method = "generalised-alpha"\nstep = "1 us"', "[solver]",
+     'no tangent for "generalised-alpha"'),
+    ("generalised-alpha without a step", PMB, 'method = "verlet"', 'method = "generalised-alpha"', "[solver]", "solver.step: missing"),
+    ("too many points in time", SLABS, 'method = "space-time"', 'method = "space-time"\nscheme = "single-field"\ngauss_points = 7',
+     "gauss_points", "expected 2 to 6"),
+    ("points of the other scheme", SLABS, 'method = "space-time"', 'method = "space-time"\ngauss_points = 4', "gauss_points",
+     'it belongs to scheme = "single-field"'),
+    ("a radius beyond 1", PMB, 'method = "verlet"', 'method = "generalised-alpha"\nstep = "1 us"\nspectral_radius = 1.1', "spectral_radius",
+     "found 1.1"),
+    ("a safety of slabs", SLABS, 'method = "space-time"', 'method = "space-time"\nsafety = 0.5', "safety", 'method = "verlet"'),
+    ("contact in slabs", SLABS, "[solver]", "[contact]\n\n[solver]", "[contact]", 'method = "verlet"'),
     ("contact in statics", PLAIN, "[solver]", "[contact]\n\n[solver]", "[contact]", 'method = "verlet"'),
     ("contact of less than a spacing", IMPACT, "[contact]", '[contact]\ndistance = "0.5 dx"', "distance", "points could pass between others"),
     ("contact beyond the horizon", IMPACT, "[contact]", '[contact]\ndistance = "4 dx"', "distance", "beyond the horizon"),

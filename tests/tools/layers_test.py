@@ -18,7 +18,8 @@ LAYERS = {
     "model": BOTTOM | {"material", "body"},
     "peridynamics": BOTTOM | {"linalg", "material", "body", "model"},
     "load": BOTTOM | {"material", "body", "model"},
-    "solver": BOTTOM | {"linalg", "body", "model", "load"},  # asks the Model interface, never one model
+    "spacetime": {"base", "linalg"},  # temporal bases and slab algebra: vectors, no models
+    "solver": BOTTOM | {"linalg", "spacetime", "body", "model", "load"},  # asks the Model interface, never one model
     "output": BOTTOM,
     "input": BOTTOM | {"material"},  # keys of laws
     "verification": BOTTOM | {"material", "input", "output"},

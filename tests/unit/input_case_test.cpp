@@ -168,7 +168,8 @@ INSTANTIATE_TEST_SUITE_P(
               "\"membrane\"?"},
         Wrong{"\"neo-hookean\"", "\"neo-hokean\"", "18", "did you mean \"neo-hookean\"?"},
         Wrong{"\"dynamic-relaxation\"", "\"newtons\"", "26",
-              "expected one of dynamic-relaxation, newton, verlet"},
+              "expected one of dynamic-relaxation, newton, verlet, space-time, "
+              "generalised-alpha"},
         Wrong{"\"damage\"]", "\"damge\"]", "31:27", "output.fields.2: found \"damge\""},
         Wrong{"\"damage\"]", "\"displacement\"]", "31", "twice"},
         Wrong{"on = [\"left\"", "on = [\"lefft\"", "22:7", "did you mean \"left\"?"},

@@ -17,7 +17,9 @@
 #include "peridynamics/lps.hpp"
 #include "peridynamics/pmb.hpp"
 #include "solver/dynamic_relaxation.hpp"
+#include "solver/generalised_alpha.hpp"
 #include "solver/newton.hpp"
+#include "solver/space_time.hpp"
 #include "solver/velocity_verlet.hpp"
 #include "support/bodies.hpp"
 #include "support/laws.hpp"
@@ -98,6 +100,21 @@ bool breaks(const PointModel& model) {
   return dynamic_cast<const Pmb*>(&model) != nullptr;
 }
 
+/// By an implicit method with a traction besides; by Verlet where a model has no tangent.
+template <class Settings>
+State implicitly(State (*solve)(Model&, Constraints&, const Settings&, Observer&, const Snapshot*),
+                 Settings settings, Problem& p, Observer& observer, const Snapshot* from) {
+  if (p.model->tangent_parts() == 0)
+    return march(*p.model, *p.constraints, {.until = 0.4, .every = 0.4, .history_every = 0.4}, observer,
+                 from);
+  const Body& body = p.model->body();
+  settings.tolerance = 1e-6;
+  settings.external = {std::make_shared<DistributedForce>(
+      DistributedForce::Density{[](const Point&, double t) { return 0.001 + 0.1 * t; }},
+      edge_shares(body, 1, body.spacing), body.size())};
+  return solve(*p.model, *p.constraints, settings, observer, from);
+}
+
 struct SolverCase {
   const char* name;
   bool in_time;
@@ -135,6 +152,34 @@ const std::vector<SolverCase>& solvers() {
          VelocityVerletSettings settings{.until = 0.4, .every = 0.2, .history_every = 0.03, .step = 0.0021};
          settings.initial_v.assign(p.model->dofs(), 0.1);
          return march(*p.model, *p.constraints, settings, observer, from);
+       }},
+      {"SpaceTime", true,
+       [](Problem& p, Observer& observer, const Snapshot* from) {
+         SpaceTimeSettings settings;  // the step follows the motion
+         settings.until = 1.3;
+         settings.every = 0.5;
+         settings.history_every = 0.17;
+         return implicitly(march_slabs, settings, p, observer, from);
+       }},
+      {"SpaceTimeSingleField", true,
+       [](Problem& p, Observer& observer, const Snapshot* from) {
+         SpaceTimeSettings settings;
+         settings.until = 1.2;
+         settings.every = 0.5;
+         settings.history_every = 0.17;
+         settings.step = 0.04;
+         settings.scheme = SlabKind::single_field;
+         settings.gauss_points = 2;
+         return implicitly(march_slabs, settings, p, observer, from);
+       }},
+      {"GeneralisedAlpha", true,
+       [](Problem& p, Observer& observer, const Snapshot* from) {
+         GeneralisedAlphaSettings settings;
+         settings.until = 1.2;
+         settings.every = 0.5;
+         settings.history_every = 0.17;
+         settings.step = 0.04;
+         return implicitly(generalised_alpha, settings, p, observer, from);
        }},
       {"VerletDampedWithVelocityAndTraction", true,
        [](Problem& p, Observer& observer, const Snapshot* from) {

@@ -13,6 +13,7 @@
 #include "peridynamics/pmb.hpp"
 #include "solver/dynamic_relaxation.hpp"
 #include "solver/newton.hpp"
+#include "solver/space_time.hpp"
 #include "solver/velocity_verlet.hpp"
 #include "support/bodies.hpp"
 #include "support/laws.hpp"
@@ -107,6 +108,18 @@ const std::vector<SolverCase>& solvers() {
          });
          Observer nobody;
          return march(model, loads, {.until = kPull, .every = kPull, .history_every = kPull}, nobody).u;
+       }},
+      {"SpaceTime", [](const Model& model) { return model.tangent_parts() > 0; },
+       [](PointModel& model, double stretch) {
+         Constraints loads = pull(model, [stretch](double t) {
+           const double x = std::min(t / kPull, 1.0);
+           return 1 + (stretch - 1) * x * x * x * (10 - 15 * x + 6 * x * x);
+         });
+         Observer nobody;
+         SpaceTimeSettings settings;  // slabs of two and a half periods of the slowest mode
+         settings.until = settings.every = settings.history_every = kPull;
+         settings.step = 10;
+         return march_slabs(model, loads, settings, nobody).u;
        }},
   };
   return all;
