@@ -70,12 +70,12 @@ struct GeometryInput {   // [geometry]
   int dimension = 2;     // number of entries of the box's size; 2 for a disc with a thickness
   double thickness = 1;  // m (2D), or m^2 (1D: key `area`)
   double spacing = 0;    // m; of listed points the mean
-  std::optional<PointsInput> points;    // instead of a lattice; the shape is the box around them
-  std::optional<SurfaceInput> surface;  // what the lattice fills; the shape is the box around it
+  std::optional<PointsInput> points;      // instead of a lattice; the shape is the box around them
+  std::optional<SurfaceInput> surface;    // what the lattice fills; the shape is the box around it
   std::optional<ElementsInput> elements;  // instead of points; the shape is the box around them
   std::string element;                    // their kind: "q4", "q8", "t3", "h8" or "t4"
-  std::array<bool, 6> open_faces{};     // where the body does not end, or nobody knows: these are no edges
-  std::string bonds = "lattice";        // or "listed", as those of points
+  std::array<bool, 6> open_faces{};       // where the body does not end, or nobody knows: these are no edges
+  std::string bonds = "lattice";          // or "listed", as those of points
   Location at;
   double horizon = 0;  // m
   Location horizon_at;
@@ -123,7 +123,7 @@ struct SetInput {  // [set.NAME]: exactly one of where, group, a shape and a lis
   Location at;
 };
 
-struct ModelInput {               // [model]
+struct ModelInput {  // [model]
   // or "membrane-bond", "pmb", "lps", "correspondence", "finite-elements"
   std::string kind = "membrane";
   // Factor G of the stabilisation energy; 0 switches it off. membrane: 4, correspondence: 1 unless given
@@ -135,8 +135,8 @@ struct ModelInput {               // [model]
   std::string surface_correction = "on";  // membrane-bond: or "off"
   // in two dimensions, but for membranes: or "strain"
   std::string plane = "stress";
-  std::string dilatation;                 // finite-elements: "mean" or "full"; empty: what suits the law
-  std::string influence = "inverse";      // lps, correspondence: or "constant"
+  std::string dilatation;             // finite-elements: "mean" or "full"; empty: what suits the law
+  std::string influence = "inverse";  // lps, correspondence: or "constant"
   Location at;
 };
 

@@ -259,25 +259,27 @@ Format describe(OutputInput& output, const Case& c) {
   return {
       .doc = "What is written. Static solvers write at each stretch.",
       .at = &output.at,
-      .keys =
-          {Key{"every", time(output.every), "Time between output states; start and end only unless given."}
-               .applies(method(c, verlet)),
-           Key{"history_every", time(output.history_every),
-               "Time between rows of the history; `every` unless given."}
-               .applies(method(c, verlet)),
-           Key{"fields",
-               Texts{&output.fields,
-                     {"displacement", "damage", "strain_energy_density", "nominal_stress", "weight_minimum",
-                      "surface_correction", "deformation_gradient", "fragment", "mises_stress"}},
-               "Fields of the output states; weight_minimum: membrane, surface_correction: "
-               "membrane-bond, deformation_gradient: correspondence and finite-elements. fragment: the number of the part "
-               "that a "
-               "point belongs to, 1 the largest. mises_stress: finite-elements, which have no damage."}
-               .otherwise(R"(["displacement", "damage", "strain_energy_density", "nominal_stress"])"),
-           Key{"checkpoint_every", Interval{&output.checkpoint_every},
-               "Wall time, or time steps (Verlet) or iterations (statics), between checkpoints, "
-               "from which `riven run --resume` goes on."}
-               .otherwise("\"5 min\"")},
+      .keys = {Key{"every", time(output.every),
+                   "Time between output states; start and end only unless given."}
+                   .applies(method(c, verlet)),
+               Key{"history_every", time(output.history_every),
+                   "Time between rows of the history; `every` unless given."}
+                   .applies(method(c, verlet)),
+               Key{"fields",
+                   Texts{
+                       &output.fields,
+                       {"displacement", "damage", "strain_energy_density", "nominal_stress", "weight_minimum",
+                        "surface_correction", "deformation_gradient", "fragment", "mises_stress"}},
+                   "Fields of the output states; weight_minimum: membrane, surface_correction: "
+                   "membrane-bond, deformation_gradient: correspondence and finite-elements. fragment: the "
+                   "number of the part "
+                   "that a "
+                   "point belongs to, 1 the largest. mises_stress: finite-elements, which have no damage."}
+                   .otherwise(R"(["displacement", "damage", "strain_energy_density", "nominal_stress"])"),
+               Key{"checkpoint_every", Interval{&output.checkpoint_every},
+                   "Wall time, or time steps (Verlet) or iterations (statics), between checkpoints, "
+                   "from which `riven run --resume` goes on."}
+                   .otherwise("\"5 min\"")},
       .finish = [&output, &c](const Check& check) {
         if (c.geometry.elements && !check.given("fields")) std::erase(output.fields, "damage");
         const double until = c.solver.until;
@@ -495,11 +497,10 @@ Format describe(Case& c) {
                "The short variant."},
            Key{"study", Table{[&c] { return describe(c.study); }, [&c] { return c.study.has_value(); }},
                "The study."}},
-      .finish =
-          [&c](const Check& check) {
-            check_failure(c, check);
-            check_elements(c);
-          }};
+      .finish = [&c](const Check& check) {
+        check_failure(c, check);
+        check_elements(c);
+      }};
 }
 
 }  // namespace riven

@@ -11,8 +11,8 @@ namespace riven {
 Format describe_arch(GeometryInput& geometry);
 Format describe_quadrilateral(GeometryInput& geometry);
 
-/// Numbers of elements along the axes of a body of `size` (m^2 or m^3), checked, with the mean size of a cell as
-/// spacing.
+/// Numbers of elements along the axes of a body of `size` (m^2 or m^3), checked, with the mean size of a cell
+/// as spacing.
 void set_elements(GeometryInput& geometry, const std::vector<int>& along, double size, const Check& check);
 
 /// What of [geometry] belongs to elements, and what does not.

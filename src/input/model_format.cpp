@@ -79,8 +79,10 @@ Format describe(ModelInput& model) {
                .otherwise("\"stress\"")
                .applies(When{"kind", &model.kind, {"pmb", "lps", "correspondence", "finite-elements"}}),
            Key{"dilatation", Text{&model.dilatation, {"mean", "full"}},
-               "How the change of volume enters an element's energy: by its mean, which does not lock where a "
-               "rubber is nearly incompressible, or at every quadrature point. Unless given: `mean` for laws with "
+               "How the change of volume enters an element's energy: by its mean, which does not lock where "
+               "a "
+               "rubber is nearly incompressible, or at every quadrature point. Unless given: `mean` for laws "
+               "with "
                "a bulk_modulus in plane strain and in space."}
                .applies(kind("finite-elements")),
            Key{"influence", Text{&model.influence, {"inverse", "constant"}},

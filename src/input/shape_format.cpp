@@ -104,8 +104,8 @@ void fill_box(const LatticeBoxForm& form, const Check& check, GeometryInput& geo
   geometry.dimension = static_cast<int>(form.size.size());
   geometry.thickness = form.thickness.value_or(form.area.value_or(1));
   if (!form.elements.empty()) {
-    set_elements(geometry, form.elements, std::accumulate(form.size.begin(), form.size.end(), 1.0, std::multiplies{}),
-                 check);
+    set_elements(geometry, form.elements,
+                 std::accumulate(form.size.begin(), form.size.end(), 1.0, std::multiplies{}), check);
     return;
   }
   geometry.spacing = spacing_of(form, check);
@@ -133,7 +133,8 @@ Format describe_lattice_box(GeometryInput& geometry) {
                Key{"points", Integers{&form->points, 1},
                    "Number of points along the axes, instead of the spacing."},
                Key{"elements", Integers{&form->elements, 1},
-                   "Number of finite elements along the axes, instead of points; `dx` is then the mean size of a cell."}},
+                   "Number of finite elements along the axes, instead of points; `dx` is then the mean size "
+                   "of a cell."}},
       .groups = {{{"spacing", "points", "elements"}}},
       .finish = [form, &geometry](const Check& check) { fill_box(*form, check, geometry); }};
 }
@@ -236,7 +237,8 @@ Format describe_geometry(Case& c) {
   const auto has_points = [&geometry] { return geometry.points && !geometry.points->is_mesh(); };
   const auto has_mesh = [&geometry] { return geometry.points && geometry.points->is_mesh(); };
   const auto is_lattice_box = [&geometry, is_box] {
-    return is_box() && !geometry.points && !geometry.surface && !is_arch(geometry) && !is_quadrilateral(geometry);
+    return is_box() && !geometry.points && !geometry.surface && !is_arch(geometry) &&
+           !is_quadrilateral(geometry);
   };
   return {
       .doc =
@@ -258,7 +260,8 @@ Format describe_geometry(Case& c) {
                          [&geometry] { return geometry.surface.has_value(); }},
                    "The inside of a surface from an STL file."},
                Key{"arch",
-                   Table{[&geometry] { return describe_arch(geometry); }, [&geometry] { return is_arch(geometry); }},
+                   Table{[&geometry] { return describe_arch(geometry); },
+                         [&geometry] { return is_arch(geometry); }},
                    "A circular arch of finite elements."},
                Key{"quadrilateral",
                    Table{[&geometry] { return describe_quadrilateral(geometry); },

@@ -138,8 +138,8 @@ PointField read_field(const pugi::xml_node& node, std::size_t points) {
 }
 
 CellKind kind_of(std::uint8_t type) {
-  for (const CellKind kind : {CellKind::line, CellKind::triangle, CellKind::quad, CellKind::tetrahedron,
-                              CellKind::hexahedron})
+  for (const CellKind kind :
+       {CellKind::line, CellKind::triangle, CellKind::quad, CellKind::tetrahedron, CellKind::hexahedron})
     if (vtk_type(kind) == type) return kind;
   throw std::runtime_error(fmt::format(
       "it has cells of VTK's type {}; expected bare vertices (1), or lines (3), triangles (5), quads (9), "

@@ -19,10 +19,9 @@ ElementShape shape_named(const std::string& name) {
 MeshBody make_elements(const GeometryInput& geometry) {
   const ElementsInput& in = *geometry.elements;
   const std::vector<Point>& corner = in.corners;
-  const auto map = in.arch ? arch_map({in.arch->span, in.arch->rise, in.arch->depth})
-                   : corner.empty()
-                       ? box_map(std::get<Box>(geometry.shape), geometry.dimension)
-                       : quadrilateral_map({corner[0], corner[1], corner[2], corner[3]});
+  const auto map = in.arch          ? arch_map({in.arch->span, in.arch->rise, in.arch->depth})
+                   : corner.empty() ? box_map(std::get<Box>(geometry.shape), geometry.dimension)
+                                    : quadrilateral_map({corner[0], corner[1], corner[2], corner[3]});
   return make_mesh(shape_named(geometry.element), in.along, geometry.thickness, map);
 }
 
@@ -36,9 +35,10 @@ void mark_elements(const Case& in, const std::vector<PointSet>& sets, MeshBody& 
     for (const Named& on : in.materials[m].on)
       for (const std::size_t element : find_set(sets, on.text).elements) {
         if (mesh.material[element] != others)
-          throw InputError(on.at, fmt::format("material.{}: elements of \"{}\" have another material already; "
-                                              "expected sets without common elements",
-                                              in.materials[m].name, on.text));
+          throw InputError(on.at,
+                           fmt::format("material.{}: elements of \"{}\" have another material already; "
+                                       "expected sets without common elements",
+                                       in.materials[m].name, on.text));
         mesh.material[element] = static_cast<std::uint8_t>(m);
       }
 }

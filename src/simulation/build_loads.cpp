@@ -73,7 +73,8 @@ class LoadBuilder {
     if (pulled_.test(face))
       throw InputError(on.at, fmt::format("load: the edge \"{}\" has two tractions; expected one", on.text));
     pulled_.set(face);
-    if (mesh_ != nullptr) return add_force(load, {face, on.text, nullptr}, shares_of(mesh_->face_shares(face)));
+    if (mesh_ != nullptr)
+      return add_force(load, {face, on.text, nullptr}, shares_of(mesh_->face_shares(face)));
     const double layer = load.layer.value_or(body_.spacing);
     std::vector<LoadShare> shares = edge_shares(body_, face, layer);
     if (shares.empty())
@@ -86,13 +87,15 @@ class LoadBuilder {
 
   [[nodiscard]] std::vector<LoadShare> shares_of(const std::vector<NodeShare>& nodes) const {
     std::vector<LoadShare> shares;
-    for (const NodeShare& share : nodes) shares.push_back({share.node, mesh_->node[share.node], share.extent});
+    for (const NodeShare& share : nodes)
+      shares.push_back({share.node, mesh_->node[share.node], share.extent});
     return shares;
   }
 
   void act_on(const LoadInput& load, const PointSet& set) {
     if (mesh_ != nullptr)
-      return add_force(load, {std::nullopt, set.name, nullptr}, shares_of(mesh_->volume_shares(set.elements)));
+      return add_force(load, {std::nullopt, set.name, nullptr},
+                       shares_of(mesh_->volume_shares(set.elements)));
     std::vector<LoadShare> shares;
     for (const std::size_t number : set.points) {
       const std::size_t point = body_.points[number];
@@ -164,10 +167,11 @@ class LoadBuilder {
     }
     if (agree) return;
     const Point& x = one.position;
-    throw InputError(on.at, fmt::format("load: \"{}\" displaces the node at ({:.4g}, {:.4g}, {:.4g}) m along {}, and "
-                                        "another load does so differently; expected equal displacements where parts "
-                                        "meet, or \"free\"",
-                                        on.text, x[0], x[1], x[2], "xyz"[one.axis]));
+    throw InputError(
+        on.at, fmt::format("load: \"{}\" displaces the node at ({:.4g}, {:.4g}, {:.4g}) m along {}, and "
+                           "another load does so differently; expected equal displacements where parts "
+                           "meet, or \"free\"",
+                           on.text, x[0], x[1], x[2], "xyz"[one.axis]));
   }
 
   /// Mirror layers hold the normal component; a tangential one alone would hold the edge's normal strain at
@@ -237,8 +241,8 @@ class LoadBuilder {
   const MeshBody* mesh_;
   std::array<std::optional<FaceLoad>, kFaces> faces_;
   std::array<Location, kFaces> face_at_;
-  Faces pulled_;              // faces with a traction
-  std::vector<bool> loaded_;  // entries that a set's load has taken
+  Faces pulled_;                                // faces with a traction
+  std::vector<bool> loaded_;                    // entries that a set's load has taken
   std::map<std::size_t, Constraint> of_nodes_;  // of a mesh, by entry
 };
 

@@ -8,9 +8,10 @@ namespace riven {
 
 namespace {
 
-/// Motions of a place with the body: translations along the axes, then rotations by one unit of angle about the axes
-/// through `origin`, with lengths over `size`. Row i: direction i.
-Eigen::MatrixXd rigid_modes(int dimension, const Eigen::Vector3d& place, const Eigen::Vector3d& origin, double size) {
+/// Motions of a place with the body: translations along the axes, then rotations by one unit of angle about
+/// the axes through `origin`, with lengths over `size`. Row i: direction i.
+Eigen::MatrixXd rigid_modes(int dimension, const Eigen::Vector3d& place, const Eigen::Vector3d& origin,
+                            double size) {
   const Eigen::Vector3d x = (place - origin) / size;
   Eigen::MatrixXd modes = Eigen::MatrixXd::Zero(dimension, dimension == 2 ? 3 : 6);
   modes.leftCols(dimension).setIdentity();
@@ -38,8 +39,8 @@ std::string words_of(const Eigen::VectorXd& mode, int dimension, const Eigen::Ve
                        origin.y() + size * along(0) / turn(0));
   const Eigen::Vector3d t = turn, u = along;
   const Eigen::Vector3d through = origin + size * t.cross(u) / t.squaredNorm(), axis = t.normalized();
-  return fmt::format("a rotation about the axis ({:.3g}, {:.3g}, {:.3g}) through ({:.4g}, {:.4g}, {:.4g}) m", axis.x(),
-                     axis.y(), axis.z(), through.x(), through.y(), through.z());
+  return fmt::format("a rotation about the axis ({:.3g}, {:.3g}, {:.3g}) through ({:.4g}, {:.4g}, {:.4g}) m",
+                     axis.x(), axis.y(), axis.z(), through.x(), through.y(), through.z());
 }
 
 }  // namespace
@@ -55,7 +56,8 @@ std::optional<std::string> free_motion(const Simulation& simulation) {
     size = std::max(size, 0.5 * (body.faces[face + 1] - body.faces[face]));
   }
   const int count = dimension == 2 ? 3 : 6;
-  Eigen::MatrixXd held = Eigen::MatrixXd::Zero(count, count);  // squares of what prescribed entries see of the modes
+  Eigen::MatrixXd held =
+      Eigen::MatrixXd::Zero(count, count);  // squares of what prescribed entries see of the modes
   for (std::size_t number = 0; number < body.points.size(); ++number) {
     const Point x = body.position(body.points[number]);
     const Eigen::MatrixXd modes = rigid_modes(dimension, Eigen::Vector3d(x.data()), origin, size);
@@ -64,10 +66,9 @@ std::optional<std::string> free_motion(const Simulation& simulation) {
         held += modes.row(axis).transpose() * modes.row(axis);
   }
   // Squares: a support on a thousandth of the body's size still holds it.
-  constexpr double kHeld = 1e-8;
+  constexpr double kHeld = 1e-8;  // far above rounding
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(held, Eigen::ComputeFullV);
-  const Eigen::Index free =
-      count - (svd.singularValues().array() > kHeld * std::max(1.0, svd.singularValues()(0))).count();
+  const Eigen::Index free = (svd.singularValues().array() <= kHeld).count();
   if (free == 0) return std::nullopt;
   // Of several the null space's basis is arbitrary: name the plain motions that are in it.
   const Eigen::MatrixXd null = svd.matrixV().rightCols(free);

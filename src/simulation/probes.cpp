@@ -166,8 +166,9 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
                : reaction_of(simulation_.set(probe.on.text), constraints),
           1);
     if (probe.kind == "nominal-stress" && face)
-      add(force_on(*face, state, constraints),
-          simulation_.mesh != nullptr ? simulation_.mesh->face_area(*face) : simulation_.body->face_area(*face));
+      add(force_on(*face, state, constraints), simulation_.mesh != nullptr
+                                                   ? simulation_.mesh->face_area(*face)
+                                                   : simulation_.body->face_area(*face));
     if (probe.kind == "nominal-stress" && !face) {
       const std::array<double, 9> stress = mean_stress(simulation_.set(probe.on.text), state.u);
       values.insert(values.end(), {stress[0], stress[1], stress[3], stress[4]});

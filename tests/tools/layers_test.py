@@ -17,6 +17,7 @@ LAYERS = {
     "body": BOTTOM,
     "model": BOTTOM | {"material", "body"},
     "peridynamics": BOTTOM | {"linalg", "material", "body", "model"},
+    "fem": BOTTOM | {"material", "body", "model"},
     "load": BOTTOM | {"material", "body", "model"},
     "solver": BOTTOM | {"linalg", "body", "model", "load"},  # asks the Model interface, never one model
     "output": BOTTOM,
