@@ -181,16 +181,11 @@ Format describe_quadrilateral(GeometryInput& geometry) {
 }
 
 void finish_elements(GeometryInput& geometry, const Check& check) {
-  if (!geometry.elements) {
-    if (check.given("element"))
-      check.fail("element",
-                 "belongs to finite elements; expected `elements` in the shape, such as box = { ..., "
-                 "elements = [20, 10] }");
-    return;
-  }
   for (const char* key : {"horizon", "bonds"})
     if (check.given(key))
       check.fail(key, "belongs to points with bonds; expected none: the body has elements");
+  geometry.horizon = 0;  // the writer leaves out what has no value
+  geometry.bonds.clear();
   const std::vector<std::string>& fitting = geometry.dimension == 2 ? kInPlane : kInSpace;
   if (geometry.element.empty()) geometry.element = fitting.front();
   if (std::find(fitting.begin(), fitting.end(), geometry.element) == fitting.end())

@@ -15,7 +15,7 @@ Format describe_quadrilateral(GeometryInput& geometry);
 /// as spacing.
 void set_elements(GeometryInput& geometry, const std::vector<int>& along, double size, const Check& check);
 
-/// What of [geometry] belongs to elements, and what does not.
+/// Of a geometry with elements: their kind, and what does not belong to them.
 void finish_elements(GeometryInput& geometry, const Check& check);
 
 /// Finite elements need a mesh, and have nothing that makes, breaks or meets bonds. Throws InputError.

@@ -235,6 +235,7 @@ Format describe_geometry(Case& c) {
   GeometryInput& geometry = c.geometry;
   const auto is_box = [&geometry] { return std::holds_alternative<Box>(geometry.shape); };
   const auto has_points = [&geometry] { return geometry.points && !geometry.points->is_mesh(); };
+
   const auto has_mesh = [&geometry] { return geometry.points && geometry.points->is_mesh(); };
   const auto is_lattice_box = [&geometry, is_box] {
     return is_box() && !geometry.points && !geometry.surface && !is_arch(geometry) &&
@@ -280,7 +281,12 @@ Format describe_geometry(Case& c) {
       .groups = {{{"box", "disc", "points", "mesh", "surface", "arch", "quadrilateral"}}},
       .finish = [&geometry](const Check& check) {
         geometry.horizon_at = check.at("horizon");
-        finish_elements(geometry, check);
+        if (geometry.elements) return finish_elements(geometry, check);
+        if (check.given("element"))
+          check.fail("element",
+                     "belongs to finite elements; expected `elements` in the shape, such as box = { ..., "
+                     "elements = [20, 10] }");
+
         if (geometry.points && check.given("bonds") && geometry.bonds != "listed")
           check.fail("bonds", "points from a file are on no lattice; expected \"listed\", or nothing");
         if (geometry.points) geometry.bonds = "listed";

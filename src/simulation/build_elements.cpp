@@ -66,7 +66,9 @@ void build_elements(Simulation& simulation) {
     simulation.mesh = &model->mesh();
     simulation.model = std::move(model);
   } catch (const InputError& error) {
-    throw InputError(in.model.at, std::string("model: ") + error.what());
+    const std::string what = error.what();
+    if (what.starts_with(in.file.string())) throw;
+    throw InputError(in.model.at, "model: " + what);
   }
 }
 
