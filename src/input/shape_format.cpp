@@ -235,7 +235,6 @@ Format describe_geometry(Case& c) {
   GeometryInput& geometry = c.geometry;
   const auto is_box = [&geometry] { return std::holds_alternative<Box>(geometry.shape); };
   const auto has_points = [&geometry] { return geometry.points && !geometry.points->is_mesh(); };
-
   const auto has_mesh = [&geometry] { return geometry.points && geometry.points->is_mesh(); };
   const auto is_lattice_box = [&geometry, is_box] {
     return is_box() && !geometry.points && !geometry.surface && !is_arch(geometry) &&
@@ -286,7 +285,6 @@ Format describe_geometry(Case& c) {
           check.fail("element",
                      "belongs to finite elements; expected `elements` in the shape, such as box = { ..., "
                      "elements = [20, 10] }");
-
         if (geometry.points && check.given("bonds") && geometry.bonds != "listed")
           check.fail("bonds", "points from a file are on no lattice; expected \"listed\", or nothing");
         if (geometry.points) geometry.bonds = "listed";
