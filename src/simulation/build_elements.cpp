@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "fem/finite_elements.hpp"
 #include "input/material_format.hpp"
 #include "simulation/build_parts.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "body/body.hpp"
-#include "fem/finite_elements.hpp"
+#include "fem/mesh_body.hpp"
 #include "input/case.hpp"
 #include "load/constraints.hpp"
 #include "load/contact_model.hpp"
