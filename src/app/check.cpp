@@ -135,7 +135,7 @@ std::string extent_text(const Body& body) {
   return text;
 }
 
-void print_model(const Simulation& simulation) {
+void print_points(const Simulation& simulation) {
   const Model& model = *simulation.model;
   const Body& body = *simulation.body;
   if (const auto& points = simulation.input.geometry.points)
@@ -154,6 +154,15 @@ void print_model(const Simulation& simulation) {
       on == nullptr ? std::string("listed") : fmt::format("{} neighbours", on->stencil.size());
   fmt::print("# bonds: {} directed, {} within the horizon of {:g} spacings\n", model.bonds(), neighbours,
              body.horizon / body.spacing);
+}
+
+void print_model(const Simulation& simulation) {
+  const Model& model = *simulation.model;
+  const Body& body = *simulation.body;
+  if (simulation.mesh == nullptr)
+    print_points(simulation);
+  else
+    fmt::print("# body: {}, volume {:.6g} m^3\n", extent_text(body), volume_of(body, body.points));
   for (const MaterialInput& in : simulation.input.materials)
     if (is_complete(in)) fmt::print("# material {}: {}\n", in.name, moduli_text(make_material(in)));
   for (const std::string& line : model.describe()) fmt::print("# {}\n", line);

@@ -55,15 +55,27 @@ struct SurfaceInput {  // [geometry] surface = {...}
   std::shared_ptr<const Surface> surface;
 };
 
+struct ArchInput {                       // [geometry] arch = {...}
+  double span = 0, rise = 0, depth = 0;  // m; of its middle line, and across it in the plane
+};
+
+struct ElementsInput {            // [geometry] with elements instead of points
+  std::vector<int> along;         // their numbers along the axes of the shape
+  std::optional<ArchInput> arch;  // else of the corners, else of a box
+  std::vector<Point> corners;     // m; of a quadrilateral
+};
+
 struct GeometryInput {   // [geometry]
   Shape shape;           // the body; a box is centred at the origin unless `from` gives its lower corner
   int dimension = 2;     // number of entries of the box's size; 2 for a disc with a thickness
   double thickness = 1;  // m (2D), or m^2 (1D: key `area`)
   double spacing = 0;    // m; of listed points the mean
-  std::optional<PointsInput> points;    // instead of a lattice; the shape is the box around them
-  std::optional<SurfaceInput> surface;  // what the lattice fills; the shape is the box around it
-  std::array<bool, 6> open_faces{};     // where the body does not end, or nobody knows: these are no edges
-  std::string bonds = "lattice";        // or "listed", as those of points
+  std::optional<PointsInput> points;      // instead of a lattice; the shape is the box around them
+  std::optional<SurfaceInput> surface;    // what the lattice fills; the shape is the box around it
+  std::optional<ElementsInput> elements;  // instead of points; the shape is the box around them
+  std::string element;                    // their kind: "q4", "q8", "t3", "h8" or "t4"
+  std::array<bool, 6> open_faces{};       // where the body does not end, or nobody knows: these are no edges
+  std::string bonds = "lattice";          // or "listed", as those of points
   Location at;
   double horizon = 0;  // m
   Location horizon_at;
@@ -111,8 +123,9 @@ struct SetInput {  // [set.NAME]: exactly one of where, group, a shape and a lis
   Location at;
 };
 
-struct ModelInput {               // [model]
-  std::string kind = "membrane";  // or "membrane-bond", "pmb", "lps", "correspondence"
+struct ModelInput {  // [model]
+  // or "membrane-bond", "pmb", "lps", "correspondence", "finite-elements"
+  std::string kind = "membrane";
   // Factor G of the stabilisation energy; 0 switches it off. membrane: 4, correspondence: 1 unless given
   std::optional<double> stabilisation;
   // membrane-bond: "published" or "zero-residual"; correspondence: "stabilised", "published" or
@@ -120,8 +133,10 @@ struct ModelInput {               // [model]
   std::string variant;
   std::string loading;                    // membrane-bond: "equibiaxial", "planar", "uniaxial", ...
   std::string surface_correction = "on";  // membrane-bond: or "off"
-  std::string plane = "stress";           // pmb, lps, correspondence in two dimensions: or "strain"
-  std::string influence = "inverse";      // lps, correspondence: or "constant"
+  // in two dimensions, but for membranes: or "strain"
+  std::string plane = "stress";
+  std::string dilatation;             // finite-elements: "mean" or "full"; empty: what suits the law
+  std::string influence = "inverse";  // lps, correspondence: or "constant"
   Location at;
 };
 

@@ -10,6 +10,7 @@
 #include "input/contact_format.hpp"
 #include "input/crack_format.hpp"
 #include "input/crack_probe_format.hpp"
+#include "input/elements_format.hpp"
 #include "input/failure_format.hpp"
 #include "input/field_format.hpp"
 #include "input/format.hpp"
@@ -303,16 +304,18 @@ Format describe(OutputInput& output, const Case& c) {
            Key{"fields",
                Texts{&output.fields,
                      {"displacement", "damage", "strain_energy_density", "nominal_stress", "weight_minimum",
-                      "surface_correction", "deformation_gradient", "fragment"}},
+                      "surface_correction", "deformation_gradient", "fragment", "mises_stress"}},
                "Fields of the output states; weight_minimum: membrane, surface_correction: "
-               "membrane-bond, deformation_gradient: correspondence. fragment: the number of the part that a "
-               "point belongs to, 1 the largest."}
+               "membrane-bond, deformation_gradient: correspondence and finite-elements. fragment: the "
+               "number of the part that a point belongs to, 1 the largest. mises_stress: finite-elements, "
+               "which have no damage."}
                .otherwise(R"(["displacement", "damage", "strain_energy_density", "nominal_stress"])"),
            Key{"checkpoint_every", Interval{&output.checkpoint_every},
                "Wall time, or time steps or iterations (statics), between checkpoints, "
                "from which `riven run --resume` goes on."}
                .otherwise("\"5 min\"")},
       .finish = [&output, &c](const Check& check) {
+        if (c.geometry.elements && !check.given("fields")) std::erase(output.fields, "damage");
         const double until = c.solver.until;
         if (output.every) check_count("every", until / *output.every, "output states", kMostStates, check);
         if (output.history_every)
@@ -528,7 +531,10 @@ Format describe(Case& c) {
                "The short variant."},
            Key{"study", Table{[&c] { return describe(c.study); }, [&c] { return c.study.has_value(); }},
                "The study."}},
-      .finish = [&c](const Check& check) { check_failure(c, check); }};
+      .finish = [&c](const Check& check) {
+        check_failure(c, check);
+        check_elements(c);
+      }};
 }
 
 }  // namespace riven

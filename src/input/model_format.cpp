@@ -39,14 +39,17 @@ Format describe(ModelInput& model) {
       .doc = "How points interact.",
       .at = &model.at,
       .keys =
-          {Key{"kind", Text{&model.kind, {"membrane", "membrane-bond", "pmb", "lps", "correspondence"}},
+          {Key{"kind",
+               Text{&model.kind,
+                    {"membrane", "membrane-bond", "pmb", "lps", "correspondence", "finite-elements"}},
                "`membrane`: rubber sheets, state-based, for any loading and law. `membrane-bond`: the "
                "published bond-based one, to compare with. `pmb`: linear springs that break, for brittle "
                "bodies in one, two or three dimensions. `lps`: linear peridynamic solid, state-based, for "
                "linear "
                "elasticity with any Poisson's ratio in two or three dimensions. `correspondence`: any law, "
                "by a "
-               "deformation gradient per point, in two or three dimensions."}
+               "deformation gradient per point, in two or three dimensions. `finite-elements`: any law, by "
+               "displacements of the nodes of a mesh (geometry with `elements`)."}
                .otherwise("\"membrane\""),
            Key{"stabilisation", Quantity{&model.stabilisation, dimension::none, not_negative},
                "Factor of the stabilisation energy; 0 switches it off. Unless given: 4 (`membrane`), 1 "
@@ -74,7 +77,14 @@ Format describe(ModelInput& model) {
                "What holds a body in two dimensions across: nothing (with `pmb` Poisson's ratio is 1/3), or "
                "rigid walls (1/4)."}
                .otherwise("\"stress\"")
-               .applies(When{"kind", &model.kind, {"pmb", "lps", "correspondence"}}),
+               .applies(When{"kind", &model.kind, {"pmb", "lps", "correspondence", "finite-elements"}}),
+           Key{"dilatation", Text{&model.dilatation, {"mean", "full"}},
+               "How the change of volume enters an element's energy: by its mean, which does not lock where "
+               "a "
+               "rubber is nearly incompressible, or at every quadrature point. Unless given: `mean` for laws "
+               "with "
+               "a bulk_modulus in plane strain and in space."}
+               .applies(kind("finite-elements")),
            Key{"influence", Text{&model.influence, {"inverse", "constant"}},
                "How much a bond counts by its length: as horizon over length, or all the same."}
                .otherwise("\"inverse\"")

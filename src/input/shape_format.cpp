@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <numeric>
 
+#include "input/elements_format.hpp"
 #include "input/mesh_format.hpp"
 #include "input/points_format.hpp"
 
@@ -35,7 +38,7 @@ std::function<bool()> holds(const std::optional<Shape>& shape) {
 struct LatticeBoxForm {
   std::vector<double> size, from;
   std::optional<double> thickness, area, spacing;
-  std::vector<int> points;
+  std::vector<int> points, elements;
 };
 
 LatticeBoxForm lattice_box_form(const GeometryInput& geometry) {
@@ -48,7 +51,10 @@ LatticeBoxForm lattice_box_form(const GeometryInput& geometry) {
   }
   if (geometry.dimension == 2) form.thickness = geometry.thickness;
   if (geometry.dimension == 1) form.area = geometry.thickness;
-  form.spacing = geometry.spacing;
+  if (geometry.elements)
+    form.elements = geometry.elements->along;
+  else
+    form.spacing = geometry.spacing;
   return form;
 }
 
@@ -97,6 +103,11 @@ void fill_box(const LatticeBoxForm& form, const Check& check, GeometryInput& geo
   geometry.shape = box;
   geometry.dimension = static_cast<int>(form.size.size());
   geometry.thickness = form.thickness.value_or(form.area.value_or(1));
+  if (!form.elements.empty()) {
+    set_elements(geometry, form.elements,
+                 std::accumulate(form.size.begin(), form.size.end(), 1.0, std::multiplies{}), check);
+    return;
+  }
   geometry.spacing = spacing_of(form, check);
   for (const double size : form.size)
     if (geometry.spacing > size)
@@ -120,8 +131,11 @@ Format describe_lattice_box(GeometryInput& geometry) {
                Key{"spacing", Quantity{&form->spacing, dimension::length, positive},
                    "Distance of the points; known as `dx` from here on."},
                Key{"points", Integers{&form->points, 1},
-                   "Number of points along the axes, instead of the spacing."}},
-      .groups = {{{"spacing", "points"}}},
+                   "Number of points along the axes, instead of the spacing."},
+               Key{"elements", Integers{&form->elements, 1},
+                   "Number of finite elements along the axes, instead of points; `dx` is then the mean size "
+                   "of a cell."}},
+      .groups = {{{"spacing", "points", "elements"}}},
       .finish = [form, &geometry](const Check& check) { fill_box(*form, check, geometry); }};
 }
 
@@ -223,13 +237,14 @@ Format describe_geometry(Case& c) {
   const auto has_points = [&geometry] { return geometry.points && !geometry.points->is_mesh(); };
   const auto has_mesh = [&geometry] { return geometry.points && geometry.points->is_mesh(); };
   const auto is_lattice_box = [&geometry, is_box] {
-    return is_box() && !geometry.points && !geometry.surface;
+    return is_box() && !geometry.points && !geometry.surface && !is_arch(geometry) &&
+           !is_quadrilateral(geometry);
   };
   return {
       .doc =
           "The body: a shape filled with points on a square or cubic lattice, points from a file, or the "
           "elements "
-          "of a mesh; and the horizon.",
+          "of a mesh; and the horizon. Or finite elements.",
       .at = &geometry.at,
       .keys = {Key{"box", Table{[&geometry] { return describe_lattice_box(geometry); }, is_lattice_box},
                    "A bar, rectangle or box."},
@@ -244,6 +259,17 @@ Format describe_geometry(Case& c) {
                    Table{[&geometry, &c] { return describe_surface(geometry, c); },
                          [&geometry] { return geometry.surface.has_value(); }},
                    "The inside of a surface from an STL file."},
+               Key{"arch",
+                   Table{[&geometry] { return describe_arch(geometry); },
+                         [&geometry] { return is_arch(geometry); }},
+                   "A circular arch of finite elements."},
+               Key{"quadrilateral",
+                   Table{[&geometry] { return describe_quadrilateral(geometry); },
+                         [&geometry] { return is_quadrilateral(geometry); }},
+                   "A quadrilateral of finite elements."},
+               Key{"element", Text{&geometry.element, {"q4", "q8", "t3", "h8", "t4"}},
+                   "Kind of the finite elements: quadrilaterals of four and eight nodes, triangles; in three "
+                   "dimensions hexahedra and tetrahedra. `q4` and `h8` unless given."},
                Key{"horizon", Quantity{&geometry.horizon, dimension::length, positive},
                    "Radius within which points interact."}
                    .otherwise("\"3 dx\""),
@@ -251,9 +277,14 @@ Format describe_geometry(Case& c) {
                    "How bonds are kept: as bits of the lattice, or in lists, with the same results but "
                    "slower and in more memory. Bonds of points from a file or of a mesh are always listed."}
                    .otherwise("\"lattice\"")},
-      .groups = {{{"box", "disc", "points", "mesh", "surface"}}},
+      .groups = {{{"box", "disc", "points", "mesh", "surface", "arch", "quadrilateral"}}},
       .finish = [&geometry](const Check& check) {
         geometry.horizon_at = check.at("horizon");
+        if (geometry.elements) return finish_elements(geometry, check);
+        if (check.given("element"))
+          check.fail("element",
+                     "belongs to finite elements; expected `elements` in the shape, such as box = { ..., "
+                     "elements = [20, 10] }");
         if (geometry.points && check.given("bonds") && geometry.bonds != "listed")
           check.fail("bonds", "points from a file are on no lattice; expected \"listed\", or nothing");
         if (geometry.points) geometry.bonds = "listed";

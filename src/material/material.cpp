@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "material/principal.hpp"
+#include "material/volume_energy.hpp"
 
 namespace riven {
 
@@ -19,19 +20,6 @@ using Tangent3 = Response::Tangent;
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 // ---- three dimensions ----
-
-/// U'(J) and U''(J), U itself returned.
-double volume_energy(const Volumetric& volumetric, double j, double& first, double& second) {
-  const double k = volumetric.bulk_modulus;
-  if (volumetric.form == Volumetric::Form::quadratic) {
-    first = k * (j - 1);
-    second = k;
-    return 0.5 * k * (j - 1) * (j - 1);
-  }
-  first = 0.5 * k * (j - 1 / j);
-  second = 0.5 * k * (1 + 1 / (j * j));
-  return 0.25 * k * (j * j - 1 - 2 * std::log(j));
-}
 
 /// W(J^(-2/3) I1, J^(-4/3) I2): the derivatives of eq. (3) to (6) with respect to F.
 template <OfInvariants L>

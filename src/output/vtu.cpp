@@ -44,9 +44,9 @@ struct CellArrays {
   std::vector<std::uint8_t> types;
 };
 
-/// VTK_LINE, VTK_TRIANGLE, VTK_QUAD
+/// VTK_LINE, VTK_TRIANGLE, VTK_QUAD, VTK_TETRA, VTK_HEXAHEDRON
 constexpr std::uint8_t vtk_type(CellKind kind) {
-  constexpr std::uint8_t kTypes[] = {3, 5, 9};
+  constexpr std::uint8_t kTypes[] = {3, 5, 9, 10, 12};
   return kTypes[static_cast<std::size_t>(kind)];
 }
 
@@ -138,10 +138,12 @@ PointField read_field(const pugi::xml_node& node, std::size_t points) {
 }
 
 CellKind kind_of(std::uint8_t type) {
-  for (const CellKind kind : {CellKind::line, CellKind::triangle, CellKind::quad})
+  for (const CellKind kind :
+       {CellKind::line, CellKind::triangle, CellKind::quad, CellKind::tetrahedron, CellKind::hexahedron})
     if (vtk_type(kind) == type) return kind;
   throw std::runtime_error(fmt::format(
-      "it has cells of VTK's type {}; expected bare vertices (1), or lines (3), triangles (5) and quads (9)",
+      "it has cells of VTK's type {}; expected bare vertices (1), or lines (3), triangles (5), quads (9), "
+      "tetrahedra (10) and hexahedra (12)",
       type));
 }
 

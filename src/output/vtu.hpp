@@ -18,16 +18,17 @@ struct PointField {
 };
 
 /// What a cell of a mesh is; a bare point is none.
-enum class CellKind { line, triangle, quad };
+enum class CellKind { line, triangle, quad, tetrahedron, hexahedron };
 
-/// "line", "triangle" or "quad".
+/// "line", "triangle", "quad", "tetrahedron" or "hexahedron".
 constexpr std::string_view name(CellKind kind) {
-  constexpr std::string_view kNames[] = {"line", "triangle", "quad"};
+  constexpr std::string_view kNames[] = {"line", "triangle", "quad", "tetrahedron", "hexahedron"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
 constexpr std::size_t corners(CellKind kind) {
-  return 2 + static_cast<std::size_t>(kind);
+  constexpr std::size_t kCorners[] = {2, 3, 4, 4, 8};
+  return kCorners[static_cast<std::size_t>(kind)];
 }
 
 /// Cells of one kind: the numbers of the points at their corners, cell by cell.

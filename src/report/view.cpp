@@ -1,4 +1,5 @@
 #include "report/view.hpp"
+#include "report/outer_sides.hpp"
 
 #include <fmt/format.h>
 
@@ -95,7 +96,7 @@ Json packed_fields(const PointCloud& cloud, const std::vector<std::size_t>& poin
 
 Json packed_cells(const PointCloud& cloud) {
   Json cells = Json::array();
-  for (const Cells& one : cloud.cells)
+  for (const Cells& one : outer_sides(cloud.cells))
     cells.push_back({{"kind", name(one.kind)}, {"nodes", packed(one.nodes)}});
   return cells;
 }

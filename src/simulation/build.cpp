@@ -29,18 +29,33 @@ std::size_t Simulation::entry(std::size_t axis, std::size_t number) const {
   return axis * body->size() + body->points[number];
 }
 
+namespace {
+
+/// Points, sets and model of a case with a peridynamic model.
+const PointModel* build_points(Simulation& simulation) {
+  const Case& input = simulation.input;
+  Body body = make_body(input);
+  for (const SetInput& set : input.sets) simulation.sets.push_back(make_set(set, input, body));
+  mark_points(input, simulation.sets, body);
+  auto model = make_model(input, std::move(body));
+  const PointModel* points = model.get();
+  simulation.body = &points->body();
+  simulation.model = with_contact(input, std::move(model), simulation.contact);
+  return points;
+}
+
+}  // namespace
+
 Simulation build_simulation(const Case& input) {
   check_memory(input, available_memory());
   Simulation simulation;
   simulation.input = input;
   simulation.parameter = input.solver.in_time() ? Parameter::time : Parameter::stretch;
-  Body body = make_body(input);
-  for (const SetInput& set : input.sets) simulation.sets.push_back(make_set(set, input, body));
-  mark_points(input, simulation.sets, body);
-  auto model = make_model(input, std::move(body));
-  const PointModel& points = *model;
-  simulation.body = &points.body();
-  simulation.model = with_contact(input, std::move(model), simulation.contact);
+  const PointModel* points = nullptr;
+  if (input.geometry.elements)
+    build_elements(simulation);
+  else
+    points = build_points(simulation);
   simulation.constraints =
       std::make_unique<Constraints>(simulation.model->dofs(), std::tuple_size_v<decltype(Body::faces)> + 1);
   build_loads(simulation, points);

@@ -153,7 +153,7 @@ Body make_body(const Case& in) {
   }
 }
 
-PointSet make_set(const SetInput& in, const Case& of, const Body& body) {
+PointSet make_set(const SetInput& in, const Case& of, const Body& body, const MeshBody* mesh) {
   PointSet set{in.name, {}};
   const double touch = 1e-9 * body.spacing;
   const std::vector<std::size_t>* group = in.group.empty() ? nullptr : &group_points(in.group, of);
@@ -162,13 +162,17 @@ PointSet make_set(const SetInput& in, const Case& of, const Body& body) {
     return std::any_of(shapes.begin(), shapes.end(),
                        [&](const TurnedShape& shape) { return signed_distance(shape, x) <= touch; });
   };
+  const auto is_inside = [&](const Point& x) {
+    return in.where ? (*in.where)(Variables{.position = x}) != 0 : in_a_shape(x);
+  };
   for (std::size_t n = 0; n < body.points.size(); ++n) {
-    const Point x = body.position(body.points[n]);
-    const bool inside = group != nullptr ? std::binary_search(group->begin(), group->end(), body.points[n])
-                        : in.where       ? (*in.where)(Variables{.position = x}) != 0
-                                         : in_a_shape(x);
-    if (inside) set.points.push_back(n);
+    const std::size_t point = body.points[n];
+    if (group != nullptr ? std::binary_search(group->begin(), group->end(), point)
+                         : is_inside(body.position(point)))
+      set.points.push_back(n);
   }
+  for (std::size_t e = 0; mesh != nullptr && e < mesh->elements(); ++e)
+    if (is_inside(mesh->centre(e))) set.elements.push_back(e);
   if (set.points.empty())
     throw InputError(
         in.at, fmt::format("set.{}: the set is empty; expected at least one of the body's {} points in it",

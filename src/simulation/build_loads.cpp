@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "load/mirror.hpp"
@@ -24,8 +25,12 @@ LoadFunction make_function(const Expression& expression, Parameter parameter) {
 /// Turns loads into constraints on the state of the model.
 class LoadBuilder {
  public:
-  LoadBuilder(Simulation& simulation, const PointModel& model)
-      : simulation_(simulation), model_(model), body_(model.body()), loaded_(model.dofs(), false) {}
+  LoadBuilder(Simulation& simulation, const PointModel* points)
+      : simulation_(simulation),
+        points_(points),
+        body_(*simulation.body),
+        mesh_(simulation.mesh),
+        loaded_(simulation.model->dofs(), false) {}
 
   void build() {
     for (const LoadInput& load : simulation_.input.loads) {
@@ -41,8 +46,9 @@ class LoadBuilder {
         }
       }
     }
+    for (auto& [entry, constraint] : of_nodes_) simulation_.constraints->add(std::move(constraint));
     for (std::size_t face = 0; face < kFaces; ++face) check_face(face);
-    add_mirror_constraints(body_, faces_, model_.conservative(), *simulation_.constraints);
+    add_mirror_constraints(body_, faces_, simulation_.model->conservative(), *simulation_.constraints);
     hold_fixed_inclusions();
   }
 
@@ -52,17 +58,23 @@ class LoadBuilder {
       if (const auto face = Simulation::face(on.text))
         pull_face(load, *face, on);
       else
-        act_on(load, on.text, simulation_.set(on.text).points);
+        act_on(load, simulation_.set(on.text));
     if (!load.on.empty()) return;
-    std::vector<std::size_t> all(body_.points.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    act_on(load, "", all);
+    PointSet all{.name = "", .points = std::vector<std::size_t>(body_.points.size())};
+    std::iota(all.points.begin(), all.points.end(), std::size_t{0});
+    if (mesh_ != nullptr) {
+      all.elements.resize(mesh_->elements());
+      std::iota(all.elements.begin(), all.elements.end(), std::size_t{0});
+    }
+    act_on(load, all);
   }
 
   void pull_face(const LoadInput& load, std::size_t face, const Named& on) {
     if (pulled_.test(face))
       throw InputError(on.at, fmt::format("load: the edge \"{}\" has two tractions; expected one", on.text));
     pulled_.set(face);
+    if (mesh_ != nullptr)
+      return add_force(load, {face, on.text, nullptr}, shares_of(mesh_->face_shares(face)));
     const double layer = load.layer.value_or(body_.spacing);
     std::vector<LoadShare> shares = edge_shares(body_, face, layer);
     if (shares.empty())
@@ -73,13 +85,23 @@ class LoadBuilder {
     add_force(load, {face, on.text, nullptr}, std::move(shares));
   }
 
-  void act_on(const LoadInput& load, const std::string& set, const std::vector<std::size_t>& numbers) {
+  [[nodiscard]] std::vector<LoadShare> shares_of(const std::vector<NodeShare>& nodes) const {
     std::vector<LoadShare> shares;
-    for (const std::size_t number : numbers) {
+    for (const NodeShare& share : nodes)
+      shares.push_back({share.node, mesh_->node[share.node], share.extent});
+    return shares;
+  }
+
+  void act_on(const LoadInput& load, const PointSet& set) {
+    if (mesh_ != nullptr)
+      return add_force(load, {std::nullopt, set.name, nullptr},
+                       shares_of(mesh_->volume_shares(set.elements)));
+    std::vector<LoadShare> shares;
+    for (const std::size_t number : set.points) {
       const std::size_t point = body_.points[number];
       shares.push_back({point, body_.position(point), body_.volume[point]});
     }
-    add_force(load, {std::nullopt, set, nullptr}, std::move(shares));
+    add_force(load, {std::nullopt, set.name, nullptr}, std::move(shares));
   }
 
   void add_force(const LoadInput& load, AppliedForce applied, std::vector<LoadShare> shares) {
@@ -95,6 +117,10 @@ class LoadBuilder {
   }
 
   void displace_face(const LoadInput& load, std::size_t face, const Named& on) {
+    if (mesh_ != nullptr) {
+      const std::vector<std::uint32_t> nodes = mesh_->nodes_on(face);
+      return displace_nodes(load, {nodes.begin(), nodes.end()}, face, on);
+    }
     if (!faces_[face]) faces_[face] = FaceLoad{.displacement = {}, .load = face};
     face_at_[face] = on.at;
     for (std::size_t axis = 0; axis < load.components().size(); ++axis) {
@@ -107,6 +133,45 @@ class LoadBuilder {
       given = make_function(*value, simulation_.parameter);
       faces_[face]->rate[axis] = !load.velocity.empty();
     }
+  }
+
+  /// A node may be on two edges: what they prescribe must agree, and each has half of the reaction.
+  void displace_nodes(const LoadInput& load, const std::vector<std::size_t>& nodes, std::size_t number,
+                      const Named& on) {
+    for (std::size_t axis = 0; axis < load.components().size(); ++axis) {
+      const auto& value = load.components()[axis].value;
+      if (!value) continue;
+      const LoadFunction function = make_function(*value, simulation_.parameter);
+      for (const std::size_t node : nodes) {
+        Constraint& constraint = of_nodes_[simulation_.entry(axis, node)];
+        constraint.slave = simulation_.entry(axis, node);
+        constraint.terms.push_back(
+            {function, mesh_->node[node], static_cast<int>(axis), 1, number, !load.velocity.empty()});
+        check_agreement(constraint, on);
+        for (PrescribedTerm& term : constraint.terms)
+          term.factor = 1.0 / static_cast<double>(constraint.terms.size());
+      }
+    }
+  }
+
+  void check_agreement(const Constraint& constraint, const Named& on) const {
+    const SolverInput& solver = simulation_.input.solver;
+    const bool in_time = simulation_.parameter == Parameter::time;
+    const double start = in_time ? 0 : 1, end = in_time ? solver.until : solver.stretch.back();
+    const PrescribedTerm &one = constraint.terms.front(), &other = constraint.terms.back();
+    bool agree = one.rate == other.rate;
+    for (const double part : {0.0, 0.37, 1.0}) {
+      const double at = start + part * (end - start), a = one.displacement(one.position, at),
+                   b = other.displacement(other.position, at);
+      agree = agree && !(std::abs(a - b) > 1e-9 * std::max(std::abs(a), std::abs(b)));
+    }
+    if (agree) return;
+    const Point& x = one.position;
+    throw InputError(
+        on.at, fmt::format("load: \"{}\" displaces the node at ({:.4g}, {:.4g}, {:.4g}) m along {}, and "
+                           "another load does so differently; expected equal displacements where parts "
+                           "meet, or \"free\"",
+                           on.text, x[0], x[1], x[2], "xyz"[one.axis]));
   }
 
   /// Mirror layers hold the normal component; a tangential one alone would hold the edge's normal strain at
@@ -136,6 +201,7 @@ class LoadBuilder {
 
   void displace_set(const LoadInput& load, const Named& on) {
     const PointSet& set = simulation_.set(on.text);
+    if (mesh_ != nullptr) return displace_nodes(load, set.points, kFaces, on);
     for (std::size_t axis = 0; axis < load.components().size(); ++axis) {
       const auto& value = load.components()[axis].value;
       if (!value) continue;
@@ -160,7 +226,7 @@ class LoadBuilder {
     for (std::size_t n = 0; n < simulation_.input.inclusions.size(); ++n) {
       if (simulation_.input.inclusions[n].motion != "fixed") continue;
       for (std::size_t d = 0; d < 3; ++d) {
-        Constraint constraint{.slave = model_.inclusion_dof(n) + d, .terms = {}};
+        Constraint constraint{.slave = points_->inclusion_dof(n) + d, .terms = {}};
         if (d < 2)
           constraint.terms.push_back(
               {[](const Point&, double) { return 0.0; }, Point{}, static_cast<int>(d), 1, kFaces});
@@ -170,12 +236,14 @@ class LoadBuilder {
   }
 
   Simulation& simulation_;
-  const PointModel& model_;
+  const PointModel* points_;
   const Body& body_;
+  const MeshBody* mesh_;
   std::array<std::optional<FaceLoad>, kFaces> faces_;
   std::array<Location, kFaces> face_at_;
-  Faces pulled_;              // faces with a traction
-  std::vector<bool> loaded_;  // entries that a set's load has taken
+  Faces pulled_;                                // faces with a traction
+  std::vector<bool> loaded_;                    // entries that a set's load has taken
+  std::map<std::size_t, Constraint> of_nodes_;  // of a mesh, by entry
 };
 
 /// Fills the initial state of the body's points. What is prescribed comes from the loads when the run starts.
@@ -252,8 +320,8 @@ class InitialBuilder {
 
 }  // namespace
 
-void build_loads(Simulation& simulation, const PointModel& model) {
-  LoadBuilder(simulation, model).build();
+void build_loads(Simulation& simulation, const PointModel* points) {
+  LoadBuilder(simulation, points).build();
 }
 
 void build_initial(Simulation& simulation, std::size_t dofs) {

@@ -20,16 +20,20 @@ void add_crack(const CrackInput& crack, Defects& to);
 /// those in three against the points of the finished body: one must be between two of them.
 void check_cracks(const Case& in, const Body& body);
 
-/// The points of a set; an empty one is an error.
-PointSet make_set(const SetInput& in, const Case& of, const Body& body);
+/// The points of a set, and the elements of a mesh; an empty one is an error.
+PointSet make_set(const SetInput& in, const Case& of, const Body& body, const MeshBody* mesh = nullptr);
 
 /// Gives the body's points the materials of their sets, and marks those whose bonds never break.
 void mark_points(const Case& in, const std::vector<PointSet>& sets, Body& body);
 
 std::unique_ptr<PointModel> make_model(const Case& in, Body body);
 
-/// Turns the loads into constraints on the state of the model.
-void build_loads(Simulation& simulation, const PointModel& model);
+/// Mesh, sets and model of a case with finite elements.
+void build_elements(Simulation& simulation);
+
+/// Turns the loads into constraints on the state of the model and forces. `points`: the model, unless it has
+/// elements.
+void build_loads(Simulation& simulation, const PointModel* points);
 
 /// Fills the initial state of the body's points. What is prescribed comes from the loads when the run starts.
 void build_initial(Simulation& simulation, std::size_t dofs);

@@ -9,6 +9,7 @@
 
 #include "base/nearest_name.hpp"
 #include "material/linear_elastic.hpp"
+#include "simulation/free_motions.hpp"
 #include "simulation/materials.hpp"
 #include "solver/velocity_verlet.hpp"
 #include "verification/reference_points.hpp"
@@ -122,10 +123,22 @@ void check_solver(const Simulation& simulation) {
                                input.model.kind, solver.method));
 }
 
+/// Elements that nothing holds move at once, or nowhere: statics has no answer.
+void check_supports(const Simulation& simulation) {
+  if (simulation.mesh == nullptr || simulation.parameter == Parameter::time) return;
+  if (const auto motion = free_motion(simulation))
+    throw InputError(
+        simulation.input.solver.at,
+        fmt::format("solver.method: the loads leave the body free to move as a whole, by {}; expected "
+                    "displacements that hold it, or method = \"verlet\"",
+                    *motion));
+}
+
 /// Every field asked for must be one that the model has.
 void check_fields(const Simulation& simulation) {
   const std::vector<double> rest(simulation.model->dofs(), 0.0);
-  std::vector<std::string> names = {"displacement", "fragment"};
+  std::vector<std::string> names = {"displacement"};
+  if (simulation.mesh == nullptr) names.emplace_back("fragment");
   for (const ModelField& field : simulation.model->fields(rest)) names.push_back(field.name);
   const OutputInput& output = simulation.input.output;
   for (const std::string& field : output.fields)
@@ -360,6 +373,7 @@ ExpectInput in_unit_of_metric(ExpectInput expect, const std::string& metric_unit
 
 void check_before_run(const Simulation& simulation, const Probes& probes) {
   check_solver(simulation);
+  check_supports(simulation);
   check_data(simulation);  // before the loads are asked for a state
   check_step(simulation);
   check_fields(simulation);
@@ -379,7 +393,7 @@ std::vector<std::string> warnings(const Simulation& simulation) {
   std::vector<std::string> list;
   const Body& body = *simulation.body;
   const double ratio = body.horizon / body.spacing;
-  if (ratio < 2.9 && body.dimension > 1)
+  if (ratio < 2.9 && body.dimension > 1 && simulation.mesh == nullptr)
     list.push_back(fmt::format(
         "the horizon is {:.3g} spacings: families of so few directions are stiff along the lattice; 3 "
         "is usual",
@@ -392,7 +406,7 @@ std::vector<std::string> warnings(const Simulation& simulation) {
     list.emplace_back(
         "the published stabilisation has a wrong unit: its strength depends on the unit of length, here the "
         "metre; it is kept for comparison, variant = \"stabilised\" is the one to use");
-  if (simulation.input.model.kind == "correspondence" &&
+  if ((simulation.input.model.kind == "correspondence" || simulation.mesh != nullptr) &&
       simulation.input.materials.front().law == LinearElastic::name)
     list.emplace_back(
         "the law \"linear-elastic\" takes rotations for strain: where they reach 1 % its stresses are wrong; "

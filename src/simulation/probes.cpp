@@ -18,13 +18,14 @@ constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 class DisplacementField {
  public:
   DisplacementField(const Simulation& simulation, std::span<const double> u)
-      : positions_(simulation.model->positions()),
+      : mesh_(simulation.mesh),
+        positions_(simulation.model->positions()),
         displacements_(simulation.model->displacements(u)),
         interpolation_(positions_, displacements_, simulation.body->defects, simulation.body->spacing,
                        simulation.body->horizon) {}
 
   [[nodiscard]] Point at(const Point& place, const ProbeInput& probe) const {
-    const auto displacement = interpolation_.at(place);
+    const auto displacement = mesh_ != nullptr ? in_element(place) : interpolation_.at(place);
     if (!displacement)
       throw InputError(probe.at, fmt::format("probe {}: there is no material at ({:g}, {:g}, {:g}) m",
                                              probe.name, place[0], place[1], place[2]));
@@ -32,6 +33,17 @@ class DisplacementField {
   }
 
  private:
+  [[nodiscard]] std::optional<Point> in_element(const Point& place) const {
+    const auto found = locate(*mesh_, place);
+    if (!found) return std::nullopt;
+    Point sum{};
+    for (std::size_t a = 0; a < found->value.size(); ++a)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        sum[axis] += found->value[a] * displacements_[mesh_->nodes(found->element)[a]][axis];
+    return sum;
+  }
+
+  const MeshBody* mesh_;
   std::vector<Point> positions_;
   std::vector<Point> displacements_;
   Interpolation interpolation_;
@@ -154,7 +166,9 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
                : reaction_of(simulation_.set(probe.on.text), constraints),
           1);
     if (probe.kind == "nominal-stress" && face)
-      add(force_on(*face, state, constraints), simulation_.body->face_area(*face));
+      add(force_on(*face, state, constraints), simulation_.mesh != nullptr
+                                                   ? simulation_.mesh->face_area(*face)
+                                                   : simulation_.body->face_area(*face));
     if (probe.kind == "nominal-stress" && !face) {
       const std::array<double, 9> stress = mean_stress(simulation_.set(probe.on.text), state.u);
       values.insert(values.end(), {stress[0], stress[1], stress[3], stress[4]});
@@ -179,11 +193,12 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
   return values;
 }
 
-/// What moves the edge, or the traction on it, exerts.
+/// What moves the edge, or the traction on it, exerts; an edge of elements may have both.
 Point Probes::force_on(std::size_t face, const State& state, const Constraints& constraints) const {
+  Point force = constraints.reaction(face);
   for (const AppliedForce& applied : simulation_.applied)
-    if (applied.face == face) return applied.force->total(state.parameter);
-  return constraints.reaction(face);
+    if (applied.face == face) force = moved(force, applied.force->total(state.parameter));
+  return force;
 }
 
 /// Position (m) and velocity (m/s) of an impactor, and the force (N) of the body on it.

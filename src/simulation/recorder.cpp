@@ -42,6 +42,29 @@ std::vector<double> of_shown_points(const Body& body, const std::vector<std::uin
   return values;
 }
 
+/// The elements by their corners.
+std::vector<Cells> cells_of(const MeshBody& mesh) {
+  Cells cells;
+  switch (mesh.shape) {
+    case ElementShape::t3:
+      cells.kind = CellKind::triangle;
+      break;
+    case ElementShape::t4:
+      cells.kind = CellKind::tetrahedron;
+      break;
+    case ElementShape::h8:
+      cells.kind = CellKind::hexahedron;
+      break;
+    default:
+      cells.kind = CellKind::quad;
+  }
+  for (std::size_t e = 0; e < mesh.elements(); ++e) {
+    const auto nodes = mesh.nodes(e).first(corners(cells.kind));
+    cells.nodes.insert(cells.nodes.end(), nodes.begin(), nodes.end());
+  }
+  return {std::move(cells)};
+}
+
 double seconds_since(Recorder::Clock::time_point start) {
   return std::chrono::duration<double>(Recorder::Clock::now() - start).count();
 }
@@ -181,6 +204,7 @@ void Recorder::remarked(const std::string& message) {
 void Recorder::write_fields() {
   PointCloud cloud;
   cloud.positions = simulation_.model->positions();
+  if (simulation_.mesh != nullptr) cloud.cells = cells_of(*simulation_.mesh);
   const auto asked = [&](const std::string& field) {
     const auto& fields = simulation_.input.output.fields;
     return std::find(fields.begin(), fields.end(), field) != fields.end();

@@ -246,15 +246,25 @@ Summary conclude(Recorder& recorder, const Simulation& simulation, const ResultF
   return summary;
 }
 
+/// How large the body is.
+std::string size_text(const Simulation& simulation) {
+  return simulation.mesh != nullptr
+             ? fmt::format("{} nodes, {} elements", simulation.model->points(), simulation.mesh->elements())
+             : fmt::format("{} points, {} bonds", simulation.model->points(), simulation.model->bonds());
+}
+
 void tell_end(const Summary& summary, const Recorder& recorder, const Simulation& simulation, Log& log,
               const RunOptions& options) {
   const std::string balance =
       simulation.model->conservative()
           ? fmt::format("energy balance {:.1e}", summary.energy.balance_error)
           : std::string("no energy balance: this model's force is not the gradient of its energy");
-  log.info(fmt::format("{} in {:.1f} s, {} force evaluations, {:.0f} million bonds/s, {}",
-                       name(summary.status), summary.timing.wall_s, recorder.evaluations(),
-                       1e-6 * summary.timing.bond_evaluations_per_second, balance));
+  const std::string rate =
+      simulation.mesh != nullptr
+          ? std::string()
+          : fmt::format("{:.0f} million bonds/s, ", 1e-6 * summary.timing.bond_evaluations_per_second);
+  log.info(fmt::format("{} in {:.1f} s, {} force evaluations, {}{}", name(summary.status),
+                       summary.timing.wall_s, recorder.evaluations(), rate, balance));
   if (summary.status == RunStatus::finished)
     log.info(fmt::format("results: {}/ (fields.pvd opens in ParaView; history.csv, summary.json)",
                          options.folder.string()));
@@ -280,8 +290,7 @@ Summary run_case(const Case& input, const RunOptions& options) {
   Recorder recorder(simulation, probes, folder, screen, log, begin, from);
 
   log.open(folder.log());
-  log.info(fmt::format("{}: {} points, {} bonds, {}, about {} of memory and {} -> {}", input.title,
-                       simulation.model->points(), simulation.model->bonds(),
+  log.info(fmt::format("{}: {}, {}, about {} of memory and {} -> {}", input.title, size_text(simulation),
                        count_text(omp_get_max_threads(), "thread"), bytes_text(memory_estimate(input)),
                        duration_text(time_estimate(simulation).total_s()), options.folder.string()));
   for (const std::string& warning : warnings(simulation)) log.warning(warning);

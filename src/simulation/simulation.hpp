@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "body/body.hpp"
+#include "fem/mesh_body.hpp"
 #include "input/case.hpp"
 #include "load/constraints.hpp"
 #include "load/contact_model.hpp"
@@ -14,10 +15,11 @@
 
 namespace riven {
 
-/// Body points that the user gave a name.
+/// Body points, nodes of a mesh among them, that the user gave a name.
 struct PointSet {
   std::string name;
-  std::vector<std::size_t> points;  // their numbers in the list of the body's points
+  std::vector<std::size_t> points;      // their numbers in the list of the body's points
+  std::vector<std::size_t> elements{};  // of a mesh: those whose centres are in the set
 };
 
 /// The set of that name. The input layer has checked that it exists.
@@ -36,7 +38,8 @@ struct Simulation {
   Case input;
   Parameter parameter = Parameter::stretch;  // what the solver marches
   std::unique_ptr<Model> model;
-  const Body* body = nullptr;             // the model's
+  const Body* body = nullptr;             // the model's; of a mesh its nodes
+  const MeshBody* mesh = nullptr;         // the model's, if it has elements
   const ContactModel* contact = nullptr;  // the model, where there is contact
   std::unique_ptr<Constraints> constraints;
   std::vector<PointSet> sets;

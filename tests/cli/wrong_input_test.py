@@ -53,8 +53,27 @@ SOLID = replaced(BLOCK, BLOCK_BOX, 'surface = { file = "block.stl", unit = "mm",
 FREE = replaced(replaced(CLOUD, ', box = { size = ["0.2 m", "0.2 m"] }', ""), 'on = ["left", "right", "bottom", "top"]', 'on = "all"')
 FREE = replaced(FREE, 'on = "right"', 'on = "all"') + SET.format(name="all", where="x > -1 m")
 
+ELEMENTS = 'box = { size = ["0.2 m", "0.2 m"], thickness = "10 mm", elements = [4, 3] }'
+MESHED = replaced(replaced(PLAIN, BOX, ELEMENTS), 'horizon = "3 dx"\n', "") + '\n[model]\nkind = "finite-elements"\n'
+
 # case, what is replaced, by what, the key's line as a fragment (the message must name its line), part of the message
 MISTAKES = [
+    ("elements for a membrane", MESHED, 'kind = "finite-elements"', 'kind = "membrane"', "[geometry]", 'expected [model] kind = "finite-elements"'),
+    ("finite elements without a mesh", MESHED, ELEMENTS, BOX, "[geometry]", "needs a mesh"),
+    ("one number of elements", MESHED, "[4, 3]", "[4]", "elements", "expected 2, one per direction"),
+    ("elements of space in the plane", MESHED, ELEMENTS, ELEMENTS + '\nelement = "h8"', "element =", "expected one of q4, q8, t3"),
+    ("a kind of element for points", PLAIN, 'horizon = "3 dx"', 'element = "q4"', "element =", "belongs to finite elements"),
+    ("a horizon for elements", MESHED, ELEMENTS, ELEMENTS + '\nhorizon = "3 dx"', "horizon", "belongs to points"),
+    ("a hole in a mesh", MESHED, "[solver]", '[[hole]]\ndisc = { radius = "1 cm" }\n\n[solver]', "[[hole]]", "has no holes"),
+    ("a limit of elements", MESHED, 'density = "1100 kg/m^3"', 'density = "1100 kg/m^3"\ncritical_stretch = 1', "[material", "has no bonds that break"),
+    ("a layer of elements", MESHED, "displacement = ", 'layer = "1 mm"\ntraction = ', "[[load]]", "has no layers of points"),
+    ("damage of elements", MESHED, "[solver]", '[output]\nfields = ["damage"]\n\n[solver]', "[output]", 'has no field "damage"'),
+    ("an overload of elements", MESHED, 'kind = "reaction"\non = "right"', 'kind = "overload"', "[[probe]]", 'has no "overload" to be followed'),
+    ("a rubber without bulk modulus", MESHED, 'kind = "finite-elements"', 'kind = "finite-elements"\nplane = "strain"', "[model]", "expected a bulk_modulus"),
+    ("a mean dilatation of a sheet", MESHED, 'kind = "finite-elements"', 'kind = "finite-elements"\ndilatation = "mean"', "[model]", "nothing locks"),
+    ("edges that do not agree", MESHED, "[solver]", '[[load]]\non = "corner"\ndisplacement = ["1 mm", "free"]\n\n[set.corner]\nwhere = "x + y > 199 mm"\n\n[solver]', 'on = "corner"', "expected equal displacements"),
+    ("an arch too deep", MESHED, ELEMENTS, 'arch = { span = "100 mm", rise = "50 mm", depth = "100 mm", thickness = "1 mm", elements = [40, 2] }', "arch", "twice the radius"),
+    ("corners clockwise", MESHED, ELEMENTS, 'quadrilateral = { corners = [[0, 0], [0, "1 m"], ["1 m", "1 m"], ["1 m", 0]], thickness = "1 mm", elements = [4, 2] }', "corners", "counterclockwise"),
     ("titel", PLAIN, "title =", "titel =", "titel =", 'did you mean "title"?'),
     ("unknown key", PLAIN, 'horizon = "3 dx"', 'horizn = "3 dx"', "horizn", 'did you mean "horizon"?'),
     ("unknown table", PLAIN, "[solver]", "[slover]", "[slover]", 'did you mean "solver"?'),

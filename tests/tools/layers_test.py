@@ -17,6 +17,7 @@ LAYERS = {
     "body": BOTTOM,
     "model": BOTTOM | {"material", "body"},
     "peridynamics": BOTTOM | {"linalg", "material", "body", "model"},
+    "fem": BOTTOM | {"material", "body", "model"},
     "load": BOTTOM | {"material", "body", "model"},
     "spacetime": {"base", "linalg"},  # temporal bases and slab algebra: vectors, no models
     "solver": BOTTOM | {"linalg", "spacetime", "body", "model", "load"},  # asks the Model interface, never one model

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 
+#include "fem/finite_elements.hpp"
 #include "peridynamics/bond_membrane.hpp"
 #include "peridynamics/correspondence.hpp"
 #include "peridynamics/lps.hpp"
@@ -32,7 +33,7 @@ Body body() {
 struct ModelCase {
   const char* name;
   double stretch;  // at the end
-  std::function<std::unique_ptr<PointModel>()> make;
+  std::function<std::unique_ptr<Model>()> make;
 };
 
 // With waves of about 2 m/s a pull of 400 s lasts 100 periods of the slowest mode, 4 s. The pull of degree
@@ -66,12 +67,35 @@ const std::vector<ModelCase>& models() {
              body(), CorrespondenceSettings{.material = unit_laws()[1].material(),
                                             .stabilisation = Stabilisation::bond_associated});
        }},
+      {"FiniteElements", 1.2,
+       [] {
+         return std::make_unique<FiniteElements>(
+             make_mesh(
+                 ElementShape::q4, {12, 8}, 1,
+                 quadrilateral_map({Point{-0.5, -0.4, 0}, {0.5, -0.2, 0}, {0.5, 0.3, 0}, {-0.5, 0.4, 0}})),
+             FiniteElementsSettings{.materials = {unit_laws()[1].compressible()}, .plane = Plane::strain});
+       }},
   };
   return all;
 }
 
+/// Nodes of the left and the right edge on rollers, one of them held.
+Constraints pull_nodes(const FiniteElements& model, const std::function<double(double)>& stretch) {
+  Constraints constraints(model.dofs(), 1);
+  for (const std::size_t face : {0U, 1U})
+    for (const std::uint32_t node : model.mesh().nodes_on(face))
+      constraints.add(
+          {.slave = node,
+           .terms = {{[stretch](const Point& x, double parameter) { return (stretch(parameter) - 1) * x[0]; },
+                      model.mesh().node[node]}}});
+  constraints.add({.slave = model.points(), .terms = {}});
+  return constraints;
+}
+
 /// The edges' loads, where the stretch is a function of the solver's parameter.
-Constraints pull(const PointModel& model, const std::function<double(double)>& stretch) {
+Constraints pull(const Model& any, const std::function<double(double)>& stretch) {
+  if (const auto* elements = dynamic_cast<const FiniteElements*>(&any)) return pull_nodes(*elements, stretch);
+  const auto& model = dynamic_cast<const PointModel&>(any);
   const auto path = [stretch](double parameter) { return Eigen::Matrix2d{{stretch(parameter), 0}, {0, 1}}; };
   Constraints constraints = constrain(model, edges(path, Faces(0b0011), true));
   // Rollers let the sheet slide along them: one point is held.
@@ -83,25 +107,25 @@ Constraints pull(const PointModel& model, const std::function<double(double)>& s
 struct SolverCase {
   const char* name;
   std::function<bool(const Model&)> takes;
-  std::function<std::vector<double>(PointModel&, double stretch)> solve;
+  std::function<std::vector<double>(Model&, double stretch)> solve;
 };
 
 const std::vector<SolverCase>& solvers() {
   static const std::vector<SolverCase> all = {
       {"DynamicRelaxation", [](const Model&) { return true; },
-       [](PointModel& model, double stretch) {
+       [](Model& model, double stretch) {
          Constraints loads = pull(model, [](double parameter) { return parameter; });
          Observer nobody;
          return relax(model, loads, {.targets = {stretch}, .tolerance = 1e-8}, nobody).u;
        }},
       {"Newton", [](const Model& model) { return model.tangent_parts() > 0; },
-       [](PointModel& model, double stretch) {
+       [](Model& model, double stretch) {
          Constraints loads = pull(model, [](double parameter) { return parameter; });
          Observer nobody;
          return newton(model, loads, {.targets = {stretch}, .tolerance = 1e-8}, nobody).u;
        }},
       {"Verlet", [](const Model& model) { return model.conservative(); },
-       [](PointModel& model, double stretch) {
+       [](Model& model, double stretch) {
          Constraints loads = pull(model, [stretch](double t) {
            const double x = std::min(t / kPull, 1.0);
            return 1 + (stretch - 1) * x * x * x * (10 - 15 * x + 6 * x * x);
@@ -126,7 +150,7 @@ const std::vector<SolverCase>& solvers() {
 }
 
 /// Displacements of the body's points, component by component.
-std::vector<double> of_points(const PointModel& model, const std::vector<double>& u) {
+std::vector<double> of_points(const Model& model, const std::vector<double>& u) {
   std::vector<double> values;
   for (const Point& d : model.displacements(u)) values.insert(values.end(), d.begin(), d.begin() + 2);
   return values;

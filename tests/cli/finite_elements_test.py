@@ -1,0 +1,168 @@
+"""Finite elements as users meet them: closed forms by every element and solver, loads, cells of the results, messages."""
+
+import json
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+from program import BOX, PLAIN, ProgramTest, history, replaced
+
+ELEMENTS = 'box = { size = ["0.2 m", "0.2 m"], thickness = "10 mm", elements = [4, 3] }'
+SHEET = replaced(replaced(PLAIN, BOX, ELEMENTS), 'horizon = "3 dx"\n', "") + '\n[model]\nkind = "finite-elements"\n'
+SHEET = replaced(SHEET, '"dynamic-relaxation"', '"newton"\ntolerance = 1e-9')
+
+BLOCK = """title = "Block"
+
+[geometry]
+box = { size = ["40 mm", "20 mm", "30 mm"], from = [0, 0, 0], elements = [3, 2, 2] }
+element = "h8"
+
+[model]
+kind = "finite-elements"
+
+[material.foam]
+law = "compressible-neo-hookean"
+youngs_modulus = "6 MPa"
+poissons_ratio = 0.3
+density = "1000 kg/m^3"
+
+[[load]]
+on = ["left", "right"]
+displacement = ["(stretch - 1)*x", "free", "free"]
+
+[[load]]
+on = "bottom"
+displacement = ["free", 0, "free"]
+
+[[load]]
+on = "back"
+displacement = ["free", "free", 0]
+
+[solver]
+method = "newton"
+stretch = [1.5]
+tolerance = 1e-9
+
+[[probe]]
+name = "force"
+kind = "reaction"
+component = "x"
+on = "right"
+
+[[probe]]
+name = "side"
+kind = "displacement"
+component = "y"
+at = ["40 mm", "20 mm", "30 mm"]
+"""
+
+
+def uniaxial(stretch):
+    """Force per area (Pa) and lateral stretch of that foam."""
+    shear, lame = 6e6 / 2 / 1.3, 6e6 * 0.3 / 1.3 / 0.4
+    from math import log
+    low, high = 0.3, 1.0
+    across = lambda q: shear * (q - 1 / q) + lame * log(stretch * q * q) / q  # noqa: E731
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if across(middle) < 0 else (low, middle)
+    return shear * (stretch - 1 / stretch) + lame * log(stretch * low * low) / stretch, low
+
+
+class FiniteElements(ProgramTest):
+    def last(self, text, name):
+        self.command("run", self.write(f"{name}.toml", text), "-o", name)
+        return history(self.top / name)[1][-1]
+
+    def test_a_sheet_has_the_force_of_its_law(self):
+        expected = 2e6 * (1.4 - 1.4**-5) * 0.2 * 0.01
+        for element in ["q4", "q8", "t3"]:
+            force = self.last(replaced(SHEET, ELEMENTS, f'{ELEMENTS}\nelement = "{element}"'), element)[1]
+            self.assertAlmostEqual(force / expected, 1, delta=1e-8)
+        relaxed = self.last(replaced(SHEET, '"newton"', '"dynamic-relaxation"'), "relaxed")[1]
+        self.assertAlmostEqual(relaxed / expected, 1, delta=1e-7)
+
+    def test_a_block_has_the_force_of_its_law(self):
+        stress, lateral = uniaxial(1.5)
+        for element in ["h8", "t4"]:
+            row = self.last(replaced(BLOCK, '"h8"', f'"{element}"'), element)
+            self.assertAlmostEqual(row[1] / (stress * 0.02 * 0.03), 1, delta=1e-7)
+            self.assertAlmostEqual(row[2] / (0.02 * (lateral - 1)), 1, delta=1e-7)
+
+    def test_tractions_and_body_forces_end_in_the_supports(self):
+        text = replaced(BLOCK, '"bottom"\ndisplacement = ["free", 0, "free"]', '"bottom"\ndisplacement = [0, 0, 0]')
+        text = replaced(text, 'on = ["left", "right"]\ndisplacement = ["(stretch - 1)*x", "free", "free"]',
+                        'on = "right"\ntraction = [0, "-10 kPa * (stretch - 1)", "2 kPa * (stretch - 1)"]')
+        text = replaced(text, 'on = "back"\ndisplacement = ["free", "free", 0]', 'body_force = ["1e5 N/m^3 * (stretch - 1)", 0, 0]')
+        text = replaced(text, 'component = "x"\non = "right"', 'on = "bottom"')
+        row = self.last(text, "pushed")
+        for found, expected in zip(row[1:4], [-0.5 * 1e5 * 0.02 * 0.03 * 0.04, 5e3 * 6e-4, -1e3 * 6e-4], strict=True):
+            self.assertAlmostEqual(found, expected, delta=1e-7)
+
+    def test_an_edge_that_is_held_along_and_pulled_across(self):
+        text = replaced(SHEET, 'on = ["left", "right", "bottom", "top"]\ndisplacement = ["(stretch - 1)*x", "(stretch - 1)*y"]',
+                        'on = "right"\ndisplacement = ["free", 0]\n\n[[load]]\non = "right"\ntraction = ["1 MPa * (stretch - 1)", 0]\n\n'
+                        '[[load]]\non = "left"\ndisplacement = [0, 0]')
+        text += '\n[[probe]]\nname = "held"\nkind = "reaction"\non = "left"\n'
+        row = self.last(text, "held")
+        self.assertAlmostEqual(row[1], 0.4e6 * 0.2 * 0.01, delta=1e-9)
+        self.assertAlmostEqual(row[3], -row[1], delta=1e-5 * row[1])
+
+    def test_a_motion_keeps_its_energy(self):
+        text = replaced(BLOCK, 'method = "newton"\nstretch = [1.5]\ntolerance = 1e-9', 'method = "verlet"\nuntil = "2 ms"')
+        text = replaced(text, '[[load]]\non = ["left", "right"]\ndisplacement = ["(stretch - 1)*x", "free", "free"]\n',
+                        '[[initial]]\nvelocity = ["100 /s * x", 0, "50 /s * y"]\n')
+        for element in ["h8", "t4"]:
+            self.last(replaced(text, '"h8"', f'"{element}"'), element)
+            energy = json.loads((self.top / element / "summary.json").read_text())["energy"]
+            self.assertLess(abs(energy["balance_error"]), 1e-3)
+            self.assertGreater(energy["strain"]["value"] if isinstance(energy["strain"], dict) else energy["strain"], 0)
+
+    def test_results_have_cells_and_are_drawn(self):
+        for name, text, cells, kind in [("sheet", SHEET, 12, 9), ("block", BLOCK, 12, 12)]:
+            self.last(text, name)
+            piece = ElementTree.parse(self.top / name / "fields/0000.vtu").getroot().find(".//Piece")
+            self.assertEqual(int(piece.get("NumberOfCells")), cells)
+            fields = [array.get("Name") for array in piece.find("PointData")]
+            self.assertEqual(fields, ["displacement", "strain_energy_density", "nominal_stress"])
+            self.command("plot", name, "-o", f"{name}.png")
+            self.command("report", name, "-o", f"{name}.html")
+            self.assertTrue((self.top / f"{name}.png").stat().st_size > 1000)
+
+    def test_check_describes_the_mesh(self):
+        said = self.command("check", self.write("case.toml", SHEET)).stdout
+        self.assertIn("# body: x -0.1 to 0.1 m, y -0.1 to 0.1 m, volume 0.0004 m^3", said)
+        self.assertIn("# mesh: 12 elements q4 of 4 quadrature points, 20 nodes", said)
+        self.assertNotIn("bonds:", said)
+        again = self.command("check", self.write("again.toml", said)).stdout
+        self.assertEqual([line for line in said.splitlines() if "time:" not in line],
+                         [line for line in again.splitlines() if "time:" not in line])
+
+    def test_arches_and_quadrilaterals_are_checked_back(self):
+        for form in ['arch = { span = "100 mm", rise = "10 mm", depth = "2 mm", thickness = "1 mm", elements = [40, 2] }',
+                     'quadrilateral = { corners = [[0, 0], ["48 mm", "44 mm"], ["48 mm", "60 mm"], [0, "44 mm"]], '
+                     'thickness = "1 mm", elements = [8, 4] }']:
+            said = self.command("check", self.write("case.toml", replaced(SHEET, ELEMENTS, form))).stdout
+            again = self.command("check", self.write("again.toml", said)).stdout
+            self.assertEqual([line for line in said.splitlines() if "time:" not in line],
+                             [line for line in again.splitlines() if "time:" not in line])
+
+    def test_materials_are_of_elements(self):
+        two = SHEET + ('\n[material.stiff]\nlaw = "neo-hookean"\nyoungs_modulus = "60 MPa"\ndensity = "1100 kg/m^3"\non = "half"\n'
+                       '\n[set.half]\nwhere = "y > -10 mm"\n')
+        two = replaced(two, '(stretch - 1)*y"', '(stretch - 1)*y"')
+        expected = 2e6 * (1.4 - 1.4**-5) * 0.2 * 0.01 * (1 + 9 * 2 / 3)
+        self.assertAlmostEqual(self.last(two, "two")[1] / expected, 1, delta=1e-8)
+
+    def test_free_motions_are_named(self):
+        free = replaced(SHEET, 'on = ["left", "right", "bottom", "top"]', "on = {}")
+        for on, values, motion in [
+                ('["left", "right"]', '["(stretch - 1)*x", "free"]', "by a translation along y;"),
+                ('["left", "right"]', '["free", "(stretch - 1)*y"]', "by a translation along x;"),
+                ('"corner"', '[0, "(stretch - 1) * 0 m"]', "by a rotation about (-0.1, -0.1) m;")]:
+            text = replaced(replaced(free, "on = {}", f"on = {on}"), '["(stretch - 1)*x", "(stretch - 1)*y"]', values)
+            text += '\n[set.corner]\nwhere = "x < -99 mm && y < -99 mm"\n'
+            self.assertIn(motion, self.refused("run", self.write("case.toml", text)))
+
+
+if __name__ == "__main__":
+    unittest.main()
