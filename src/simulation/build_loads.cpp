@@ -135,7 +135,7 @@ class LoadBuilder {
     }
   }
 
-  /// A node may be on two edges: what they prescribe must agree, and each has half of the reaction.
+  /// A node may be on two edges: what they prescribe must agree.
   void displace_nodes(const LoadInput& load, const std::vector<std::size_t>& nodes, std::size_t number,
                       const Named& on) {
     for (std::size_t axis = 0; axis < load.components().size(); ++axis) {
@@ -148,10 +148,20 @@ class LoadBuilder {
         constraint.terms.push_back(
             {function, mesh_->node[node], static_cast<int>(axis), 1, number, !load.velocity.empty()});
         check_agreement(constraint, on);
-        for (PrescribedTerm& term : constraint.terms)
-          term.factor = 1.0 / static_cast<double>(constraint.terms.size());
+        share_out(constraint);
       }
     }
+  }
+
+  /// Whose reaction the force on a node is: that of the edge across the component, which then has its own
+  /// section force, or of all that prescribe it alike.
+  static void share_out(Constraint& constraint) {
+    const auto is_across = [](const PrescribedTerm& term) {
+      return term.load < kFaces && term.load / 2 == static_cast<std::size_t>(term.axis);
+    };
+    const auto across = std::count_if(constraint.terms.begin(), constraint.terms.end(), is_across);
+    const double share = 1.0 / static_cast<double>(across > 0 ? across : std::ssize(constraint.terms));
+    for (PrescribedTerm& term : constraint.terms) term.factor = across == 0 || is_across(term) ? share : 0;
   }
 
   void check_agreement(const Constraint& constraint, const Named& on) const {
