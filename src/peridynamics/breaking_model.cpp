@@ -257,12 +257,13 @@ std::vector<std::size_t> BreakingModel::lose(std::vector<LongBond> bonds, std::s
   for (const LongBond& bond : bonds) points.insert(points.end(), {bond.point, bond.end});
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
+  const std::vector<std::size_t> changed = changed_by(points);
   const auto energy = [&] {
     return ordered_sum<double>(
-        points.size(),
+        changed.size(),
         [&](std::size_t begin, std::size_t end) {
           double sum = 0;
-          for (std::size_t n = begin; n < end; ++n) sum += family_energy(points[n], u);
+          for (std::size_t n = begin; n < end; ++n) sum += family_energy(changed[n], u);
           return sum;
         },
         kLanes);

@@ -36,6 +36,10 @@ class BreakingModel : public PointModel {
 
   /// Follows the bonds of stored points (ascending), of which some have gone or, after `restore`, come back.
   virtual void refit(std::span<const std::size_t> points) = 0;
+  /// Points (ascending) whose families `refit` changes when these lose bonds.
+  [[nodiscard]] virtual std::vector<std::size_t> changed_by(std::vector<std::size_t> points) const {
+    return points;
+  }
   /// Whether families may be stiffer after `refit`.
   [[nodiscard]] virtual bool stiffens() const { return false; }
   /// For `refit`: blocks of points that have lost bonds are no longer intact, but kernels still visit them.

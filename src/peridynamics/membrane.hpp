@@ -99,6 +99,9 @@ class Membrane final : public BreakingModel {
   void make_families();
   void fit(std::size_t point);
   void refit(std::span<const std::size_t> points) override;
+  [[nodiscard]] std::vector<std::size_t> changed_by(std::vector<std::size_t> points) const override {
+    return with_neighbours(points);
+  }
   [[nodiscard]] bool stiffens() const override { return true; }
   void limits_set() override;
   [[nodiscard]] double crushed_energy(std::size_t point, std::span<const double> u) const override;

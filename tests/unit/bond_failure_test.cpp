@@ -187,7 +187,9 @@ TEST(BondFailure, APointWithTooMuchEnergyLosesAllItsBonds) {
     whole.mark(whole.unbreakable, std::vector<std::size_t>{14, 15}, 1);
     auto model = kind.make(whole, 1);
     std::vector<double> u = stretched(*model, 0.02);
-    for (const std::size_t i : whole.points) u[i] *= 1.5 + whole.position(i)[0];
+    Random random(21);
+    for (const std::size_t i : whole.points)
+      u[i] = u[i] * (1.5 + whole.position(i)[0]) + 1e-3 * random.between(-1, 1);
     std::vector<double> density;
     std::vector<bool> loaded(whole.size(), false);
     for (const std::size_t i : whole.points) density.push_back(model->family_energy(i, u) / whole.volume[i]);
@@ -198,7 +200,10 @@ TEST(BondFailure, APointWithTooMuchEnergyLosesAllItsBonds) {
     FailureLimits limits = FailureLimits::uniform(kNever);
     limits.energy_density = {limit};
     model->set_limits(limits);
-    EXPECT_NEAR(model->overload(u), std::sqrt(sorted[sorted.size() - 3] / limit), 0.05);
+    double highest = 0;
+    for (std::size_t n = 0; n < density.size(); ++n)
+      if (!whole.is_unbreakable(whole.points[n])) highest = std::max(highest, density[n]);
+    EXPECT_NEAR(model->overload(u), std::sqrt(highest / limit), 1e-12);
     lose_bonds(*model, u);
     for_each_pair(whole, model->body(), [&](std::size_t i, std::size_t j, bool exists) {
       const bool held = whole.is_unbreakable(i) || whole.is_unbreakable(j);
@@ -280,7 +285,9 @@ TEST(BondFailure, CrushedFamiliesAreDebrisForGood) {
     for (const std::size_t i : body.points) energy += model->family_energy(i, inside_out);
     const std::vector<double> force = lose_bonds(*model, inside_out);
     for (const double value : force) EXPECT_EQ(value, 0);
-    if (std::isfinite(energy)) EXPECT_NEAR(model->dissipated_energy(), dissipated + energy, 1e-12 * energy);
+    if (std::isfinite(energy)) {
+      EXPECT_NEAR(model->dissipated_energy(), dissipated + energy, 1e-12 * energy);
+    }
     Snapshot snapshot;
     model->save(snapshot);
     other->restore(snapshot);
