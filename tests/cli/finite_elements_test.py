@@ -108,13 +108,14 @@ class FiniteElements(ProgramTest):
         self.assertAlmostEqual(row[3], -row[1], delta=1e-5 * row[1])
 
     def test_a_motion_keeps_its_energy(self):
-        text = replaced(BLOCK, 'method = "newton"\nstretch = [1.5]\ntolerance = 1e-9', 'method = "verlet"\nuntil = "2 ms"')
+        text = replaced(BLOCK, 'method = "newton"\nstretch = [1.5]\ntolerance = 1e-9', 'method = "verlet"\nuntil = "2 ms"\nsafety = 0.1')
         text = replaced(text, '[[load]]\non = ["left", "right"]\ndisplacement = ["(stretch - 1)*x", "free", "free"]\n',
                         '[[initial]]\nvelocity = ["100 /s * x", 0, "50 /s * y"]\n')
         for element in ["h8", "t4"]:
             self.last(replaced(text, '"h8"', f'"{element}"'), element)
             energy = json.loads((self.top / element / "summary.json").read_text())["energy"]
-            self.assertLess(abs(energy["balance_error"]), 1e-3)
+            # Of second order in the step: 1 % at the default's 0.8.
+            self.assertLess(abs(energy["balance_error"]), 3e-4)
             self.assertGreater(energy["strain"]["value"] if isinstance(energy["strain"], dict) else energy["strain"], 0)
 
     def test_results_have_cells_and_are_drawn(self):
@@ -149,8 +150,11 @@ class FiniteElements(ProgramTest):
     def test_materials_are_of_elements(self):
         two = SHEET + ('\n[material.stiff]\nlaw = "neo-hookean"\nyoungs_modulus = "60 MPa"\ndensity = "1100 kg/m^3"\non = "half"\n'
                        '\n[set.half]\nwhere = "y > -10 mm"\n')
-        two = replaced(two, '(stretch - 1)*y"', '(stretch - 1)*y"')
-        expected = 2e6 * (1.4 - 1.4**-5) * 0.2 * 0.01 * (1 + 9 * 2 / 3)
+        # Uniaxial: incompressible sheets of both get as narrow.
+        two = replaced(two, 'on = ["left", "right", "bottom", "top"]\ndisplacement = ["(stretch - 1)*x", "(stretch - 1)*y"]',
+                       'on = ["left", "right"]\ndisplacement = ["(stretch - 1)*x", "free"]\n\n'
+                       '[[load]]\non = "bottom"\ndisplacement = ["free", 0]')
+        expected = 2e6 * (1.4 - 1.4**-2) * 0.2 * 0.01 * (1 + 9 * 2 / 3)
         self.assertAlmostEqual(self.last(two, "two")[1] / expected, 1, delta=1e-8)
 
     def test_free_motions_are_named(self):
