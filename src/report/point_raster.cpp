@@ -76,6 +76,9 @@ class Layers {
 
 constexpr std::pair<float, Colour> kNothing = {std::numeric_limits<float>::infinity(), kWhite};
 
+// Pixels on the edge that two facets share belong to one of them, whatever rounding says.
+constexpr double kOnEdge = 1e-9;
+
 Colour shaded(Colour colour, double light) {
   for (auto& part : colour) part = static_cast<std::uint8_t>(std::lround(light * part));
   return colour;
@@ -110,6 +113,31 @@ Raster raster_of(std::span<const Sphere> spheres, int width, int height) {
       return std::pair(static_cast<float>(-(sphere.depth + z * sphere.radius)),
                        shaded(sphere.colour, kDark + (1 - kDark) * light));
     });
+  return layers.averaged();
+}
+
+Raster raster_of(std::span<const Facet> facets, int width, int height) {
+  Layers layers(width, height);
+  for (const Facet& facet : facets) {
+    const auto& [a, b, c] = facet.corner;
+    const auto [left, right] = std::minmax({a.at.x, b.at.x, c.at.x});
+    const auto [top, bottom] = std::minmax({a.at.y, b.at.y, c.at.y});
+    const Pixel centre{0.5 * (left + right), 0.5 * (top + bottom)};
+    const double whole = (b.at.x - a.at.x) * (c.at.y - a.at.y) - (b.at.y - a.at.y) * (c.at.x - a.at.x);
+    if (whole == 0) continue;
+    layers.paint(centre, {0.5 * (right - left), 0.5 * (bottom - top)}, [&](double dx, double dy) {
+      const double x = centre.x + dx - a.at.x, y = centre.y + dy - a.at.y;
+      const double at_b = (x * (c.at.y - a.at.y) - y * (c.at.x - a.at.x)) / whole,
+                   at_c = (y * (b.at.x - a.at.x) - x * (b.at.y - a.at.y)) / whole, at_a = 1 - at_b - at_c;
+      if (std::min({at_a, at_b, at_c}) < -kOnEdge) return kNothing;
+      Colour colour{};
+      for (std::size_t n = 0; n < colour.size(); ++n)
+        colour[n] = static_cast<std::uint8_t>(std::clamp(
+            std::lround(facet.light * (at_a * a.colour[n] + at_b * b.colour[n] + at_c * c.colour[n])), 0L,
+            255L));
+      return std::pair(static_cast<float>(-(at_a * a.depth + at_b * b.depth + at_c * c.depth)), colour);
+    });
+  }
   return layers.averaged();
 }
 

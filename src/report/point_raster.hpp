@@ -24,6 +24,19 @@ struct Sphere {
   Colour colour{};
 };
 
+/// A corner of a facet.
+struct Corner {
+  Pixel at;          // px
+  double depth = 0;  // px towards the viewer
+  Colour colour{};
+};
+
+/// A triangle of a mesh on the raster, with colours that run from corner to corner; `light`: 1 as they are.
+struct Facet {
+  std::array<Corner, 3> corner;
+  double light = 1;
+};
+
 /// How far a cell reaches from its centre, in widths: a square to its half, or farther where a neighbour
 /// follows, with which it shares what is between; a disc so far that it covers what lies between points in
 /// disorder.
@@ -35,5 +48,8 @@ Raster raster_of(std::span<const Tile> tiles, bool square, int width, int height
 
 /// The nearest sphere to the viewer at every pixel, shaded by light from the upper left.
 Raster raster_of(std::span<const Sphere> spheres, int width, int height);
+
+/// The facet nearest to the viewer at every pixel.
+Raster raster_of(std::span<const Facet> facets, int width, int height);
 
 }  // namespace riven

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
+#include "report/outer_sides.hpp"
 #include "report/point_raster.hpp"
 #include "report/what_to_show.hpp"
 
@@ -46,6 +48,8 @@ Scene::Scene(const PointCloud& cloud, double scale)
   const std::vector<Point> deformed = displaced(cloud, scale);
   cells_ = point_shapes(positions_, deformed, projection_.axes());
   for (const Point& place : deformed) places_.push_back(projection_(place));
+  for (Cells& cells : outer_sides(cloud.cells))
+    if (cells.kind != CellKind::line) mesh_.push_back(std::move(cells));
 }
 
 /// The part of the gradient in the plane of view, times the spacing (m). A cell that is turned over or
@@ -96,7 +100,7 @@ std::array<double, 2> Scene::reach(std::size_t i, double widths) const {
 Frame Scene::frame() const {
   Frame frame;
   for (std::size_t i = 0; i < places_.size(); ++i) {
-    const auto [across, up] = reach(i, kFreeSide);
+    const auto [across, up] = mesh_.empty() ? reach(i, kFreeSide) : std::array<double, 2>{};
     for (const double side : {-1.0, 1.0}) {
       frame.across.include(places_[i][0] + side * across);
       frame.up.include(places_[i][1] + side * up);
@@ -109,7 +113,7 @@ Point Scene::size() const {
   std::array<Range, 3> extent;
   double spacing = 0;
   for (std::size_t i = 0; i < positions_.size(); ++i) {
-    spacing = std::max(spacing, cells_.shapes[i].spacing);
+    if (mesh_.empty()) spacing = std::max(spacing, cells_.shapes[i].spacing);
     for (std::size_t a = 0; a < 3; ++a) extent[a].include(positions_[i][a]);
   }
   return {extent[0].width() + spacing, extent[1].width() + spacing, extent[2].width() + spacing};
@@ -119,6 +123,11 @@ Raster Scene::drawn(const Frame& frame, int width, int height,
                     const std::function<Colour(std::size_t)>& colour) const {
   // The longer side is rounded to whole pixels by the lesser part.
   const ToRaster to{frame, width > height ? width / frame.across.width() : height / frame.up.width()};
+  if (!mesh_.empty()) {
+    std::vector<Pixel> places;
+    for (const Point& place : places_) places.push_back(to(place));
+    return drawn_mesh(places, to.scale, width, height, colour);
+  }
   if (projection_.dimension() == 3) {
     std::vector<Sphere> spheres;
     for (std::size_t i = 0; i < places_.size(); ++i)
@@ -138,6 +147,32 @@ Raster Scene::drawn(const Frame& frame, int width, int height,
                      colour(i)});
   }
   return raster_of(tiles, cells_.on_lattice, width, height);
+}
+
+/// Triangles, and quads as two, their brightness by how they face the viewer.
+Raster Scene::drawn_mesh(const std::vector<Pixel>& places, double scale, int width, int height,
+                         const std::function<Colour(std::size_t)>& colour) const {
+  constexpr double kDark = 0.6;  // seen from the side
+  std::vector<Facet> facets;
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    Facet facet;
+    for (std::size_t n = 0; n < 3; ++n) {
+      const std::size_t node = std::array{a, b, c}[n];
+      facet.corner[n] = {places[node], scale * places_[node][2], colour(node)};
+    }
+    const Eigen::Vector3d from(places_[a].data());
+    const Eigen::Vector3d normal =
+        (Eigen::Vector3d(places_[b].data()) - from).cross(Eigen::Vector3d(places_[c].data()) - from);
+    facet.light = kDark + (1 - kDark) * std::abs(normal.z()) / normal.norm();
+    if (std::isfinite(facet.light)) facets.push_back(facet);
+  };
+  for (const Cells& cells : mesh_)
+    for (std::size_t n = 0; n < cells.nodes.size(); n += corners(cells.kind)) {
+      const auto node = [&](std::size_t corner) { return cells.nodes[n + corner]; };
+      add(node(0), node(1), node(2));
+      if (cells.kind == CellKind::quad) add(node(0), node(2), node(3));
+    }
+  return raster_of(facets, width, height);
 }
 
 }  // namespace riven

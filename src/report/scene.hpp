@@ -19,7 +19,7 @@ struct Frame {
   void include(const Frame& other);
 };
 
-/// The points of a cloud, displaced, as the viewer sees them (m).
+/// The points of a cloud, displaced, as the viewer sees them (m), or its mesh.
 class Scene {
  public:
   /// `scale`: of the displacements. Keeps a reference to the positions.
@@ -33,11 +33,14 @@ class Scene {
   /// The undeformed body with its outermost cells (m).
   [[nodiscard]] Point size() const;
 
-  /// The points in a frame that fills a raster: cells that share what is between them, or of a solid balls.
+  /// The points in a frame that fills a raster: cells that share what is between them, or of a solid balls;
+  /// the elements of a mesh.
   [[nodiscard]] Raster drawn(const Frame& frame, int width, int height,
                              const std::function<Colour(std::size_t)>& colour) const;
 
  private:
+  [[nodiscard]] Raster drawn_mesh(const std::vector<Pixel>& places, double scale, int width, int height,
+                                  const std::function<Colour(std::size_t)>& colour) const;
   [[nodiscard]] std::array<double, 4> cell(std::size_t i) const;
   [[nodiscard]] double radius(std::size_t i) const;
   [[nodiscard]] std::array<double, 4> sides(std::size_t i) const;
@@ -48,6 +51,7 @@ class Scene {
   Projection projection_;
   PointShapes cells_;
   std::vector<Point> places_;
+  std::vector<Cells> mesh_;  // triangles and quads that are seen; empty: bare points
 };
 
 }  // namespace riven
