@@ -134,7 +134,7 @@ const std::vector<SolverCase>& solvers() {
          return march(model, loads, {.until = kPull, .every = kPull, .history_every = kPull}, nobody).u;
        }},
       {"SpaceTime", [](const Model& model) { return model.tangent_parts() > 0; },
-       [](PointModel& model, double stretch) {
+       [](Model& model, double stretch) {
          Constraints loads = pull(model, [stretch](double t) {
            const double x = std::min(t / kPull, 1.0);
            return 1 + (stretch - 1) * x * x * x * (10 - 15 * x + 6 * x * x);
