@@ -278,6 +278,7 @@ Format describe(SolverInput& s) {
       .finish = [&s](const Check& check) {
         check_stretch(s.stretch, check);
         if (s.gauss_points > 6) check.fail("gauss_points", "expected 2 to 6");
+        if (!s.tolerance && !s.is_explicit()) s.tolerance = s.in_time() ? 1e-8 : 1e-5;
         if (s.stretch.empty()) {
           s.until_at = check.at("until");
           if (s.step) check_count("step", s.until / *s.step, "time steps", kMostSteps, check);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include "base/error.hpp"
@@ -36,6 +35,32 @@ void check(const FailureLimits& limits, const Body& body) {
       if (!(limit > 0))
         throw InputError(
             fmt::format("limit of damage or energy density: found {:g}; expected one above 0", limit));
+}
+
+/// Points (ascending) whose bonds are others than these masks said.
+std::vector<std::size_t> changed_since(const std::vector<std::uint8_t>& before, const Body& body) {
+  std::vector<std::size_t> points;
+  const std::vector<std::uint8_t>& now = body.masks();
+  if (const LatticeBonds* on = body.on_lattice()) {
+    const std::size_t bonds_of_block = on->stencil.size();
+    for (std::size_t block = 0; block * bonds_of_block < now.size(); ++block) {
+      unsigned lanes = 0;
+      for (std::size_t k = block * bonds_of_block; k < (block + 1) * bonds_of_block; ++k)
+        lanes |= static_cast<unsigned>(now[k] ^ before[k]);
+      for (std::size_t lane = 0; lane < kLanes; ++lane)
+        if ((lanes >> lane & 1U) != 0) points.push_back(block * kLanes + lane);
+    }
+    return points;
+  }
+  const auto& list = std::get<ListedBonds>(body.bonds);
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    const auto first = static_cast<std::ptrdiff_t>(list.begin[i] / 8 + i);
+    const std::size_t bytes = (list.begin[i + 1] - list.begin[i] + 7) / 8;
+    if (!std::equal(now.begin() + first, now.begin() + first + static_cast<std::ptrdiff_t>(bytes),
+                    before.begin() + first))
+      points.push_back(i);
+  }
+  return points;
 }
 
 }  // namespace
@@ -349,10 +374,14 @@ void BreakingModel::save(Snapshot& to) const {
 }
 
 void BreakingModel::restore(const Snapshot& from) {
+  const std::vector<std::uint8_t> masks = bond_masks(), times = times_crushed_;
   each_member(*this, from.restoring());
-  std::vector<std::size_t> all(body().size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  refit(all);
+  std::vector<std::size_t> points = changed_since(masks, body());
+  for (std::size_t i = 0; i < times.size(); ++i)
+    if (times[i] != times_crushed_[i]) points.push_back(i);
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  refit(points);
 }
 
 }  // namespace riven

@@ -41,7 +41,7 @@ Membrane::Membrane(Body body, Material material, double stabilisation)
   energy_volume_ = this->body().volume;
   planes_.volume = energy_volume_.data();
   for (auto* plane : {&planes_.kappa, &planes_.mean_s2, &planes_.mean_s4, &planes_.energy_density,
-                      &smallest_weight_, &base_weight_})
+                      &smallest_weight_, &base_weight_, &base_trace_})
     plane->assign(n, 0.0);
   for (auto& plane : planes_.mean_gradient) plane.assign(n, 0.0);
   look_at_bonds();
@@ -89,7 +89,7 @@ std::vector<std::string> Membrane::describe() const {
 }
 
 std::size_t Membrane::bytes() const {
-  const std::size_t planes = 11 + (body().on_lattice() != nullptr ? kMoments + 6 : 0);
+  const std::size_t planes = 12 + (body().on_lattice() != nullptr ? kMoments + 6 : 0);
   constexpr std::size_t per_bond = 5 * sizeof(double) + 2 * sizeof(End);
   return body().bytes() + body().size() * planes * sizeof(double) + lattice_.blocks.size() +
          list_.points.size() * sizeof(MembranePoint) + listed_.size() * sizeof(ListedFamily) +

@@ -177,6 +177,7 @@ class Membrane final : public BreakingModel {
   MembraneList list_;
   std::vector<double> smallest_weight_;  // of the family over its base weight, before any repair
   std::vector<double> base_weight_;      // of the family at the start (1/m)
+  std::vector<double> base_trace_;       // trace of its inverse shape tensor by its base weights
   std::vector<double> energy_volume_;    // volume times the share of the energy left (m^3)
   FamilyWeights whole_;                  // of a whole stencil, once one was met
   double most_energy_density_ = 0;       // of a family all of whose bonds have the limit of stretch (J/m^3)

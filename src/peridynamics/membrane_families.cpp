@@ -19,15 +19,22 @@ constexpr double kCutFamilyStabilisation = 0.1;
 // lattice's bonds that do not have one of 0.02 and more.
 constexpr double kFlatFamily = 1e-4;
 
-// Trace of the inverse shape tensor of a whole family.
-constexpr double kWholeTrace = 4;
-
 // Shares of a family's base weights: with less left it takes its averages from the deformation gradient, or
 // has no energy of its own any more (theory, section 5, broken bonds).
 constexpr double kLostFamily = 0.1;
 
 Eigen::Vector2d plane(const Point& p) {
   return {p[0], p[1]};
+}
+
+/// (sum w n n^T)^-1; infinite for bonds on one line.
+Eigen::Matrix2d inverse_shape(const std::vector<PlaneBond>& bonds, const FamilyWeights& weights) {
+  Eigen::Matrix2d shape = Eigen::Matrix2d::Zero();
+  for (std::size_t j = 0; j < bonds.size(); ++j) {
+    const Eigen::Vector2d n = Eigen::Vector2d(bonds[j].x, bonds[j].y).normalized();
+    shape += weights.weight[j] * n * n.transpose();
+  }
+  return shape.inverse();
 }
 
 }  // namespace
@@ -61,7 +68,10 @@ void Membrane::look_at_bonds() {
 void Membrane::limits_set() {
   const double limit = *std::min_element(limits().stretch.begin(), limits().stretch.end());
   most_energy_density_ = equal_stretch_energy(limit, 0, 0);
-  refit(body().points);
+  std::vector<std::size_t> cut;
+  for (const std::size_t i : body().points)
+    if (body().damage(i) > 0) cut.push_back(i);
+  refit(cut);
 }
 
 double Membrane::equal_stretch_energy(double stretch, std::size_t /*material*/, std::size_t /*other*/) const {
@@ -158,7 +168,10 @@ void Membrane::make_families() {
 void Membrane::fit(std::size_t point) {
   const std::vector<PlaneBond> bonds = unshortened_bonds_of(point);
   const double weight = total_weight(bonds);
-  if (base_weight_[point] == 0) base_weight_[point] = weight;
+  if (base_weight_[point] == 0) {
+    base_weight_[point] = weight;
+    base_trace_[point] = inverse_shape(bonds, base_weights(bonds)).trace();
+  }
   const double share = weight > 0 ? weight / base_weight_[point] : 0;
   const bool at_interface = !body().interface_of(point).empty();
   const LatticeBonds* on = body().on_lattice();
@@ -235,8 +248,8 @@ void Membrane::add_listed_family(std::size_t point, const FamilyWeights& weights
   if (family.by_gradient) family.inverse_shape = shape.inverse();
   // Few bonds near a line make F stiff across it: a damaged family is never stiffer than it was.
   if (family.by_gradient && !is_sound(point))
-    energy_volume_[point] =
-        std::min(energy_volume_[point], body().volume[point] * kWholeTrace / family.inverse_shape.trace());
+    energy_volume_[point] = std::min(
+        energy_volume_[point], body().volume[point] * base_trace_[point] / family.inverse_shape.trace());
   ListedFamilyBonds& list = listed_bonds_;
   family.begin = list.end.size();
   for (const MembraneBond& bond : bonds) {

@@ -36,7 +36,7 @@ void fill(const Simulation& simulation, TimeStepSettings& settings) {
   settings.every = out.every.value_or(in.until);
   settings.history_every = out.history_every.value_or(settings.every);
   settings.step = in.step;
-  settings.tolerance = in.tolerance.value_or(settings.tolerance);
+  settings.tolerance = in.tolerance.value();
   settings.step_tolerance = in.step_tolerance;
   settings.initial_u = simulation.initial_u;
   settings.initial_v = simulation.initial_v;
@@ -76,7 +76,7 @@ State solve(const Simulation& simulation, Observer& observer, const Snapshot* fr
   }
   const LoadStepSettings settings{.targets = in.stretch,
                                   .increment = in.increment,
-                                  .tolerance = in.tolerance.value_or(LoadStepSettings{}.tolerance),
+                                  .tolerance = in.tolerance.value(),
                                   .max_iterations = in.max_iterations,
                                   .external = simulation.external};
   const auto solve_statics = in.method == "newton" ? newton : relax;

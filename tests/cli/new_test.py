@@ -91,7 +91,7 @@ class New(ProgramTest):
         for words, message in {
                 ("--kind", "membran"): "--kind membran: unknown; expected one of "
                                        + ", ".join(KINDS) + '; did you mean "membrane"?',
-                ("--kind", "x"): "expected one of membrane",
+                ("--kind", "x"): "expected one of " + ", ".join(KINDS),
                 ("folder",): "folder: is a folder; expected the name of a file to write, such as folder/membrane.toml",
                 ("nowhere/sheet.toml",): "there is no folder nowhere",
                 ("a.toml", "b.toml"): "b.toml: one argument too many",

@@ -151,7 +151,8 @@ INSTANTIATE_TEST_SUITE_P(
     Names, WrongInput,
     testing::Values(
         Wrong{"horizon =", "horizn =", "5:1",
-              "geometry.horizn: unknown key; valid here are box, disc, points, mesh, surface, horizon, "
+              "geometry.horizn: unknown key; valid here are box, disc, points, mesh, surface, arch, "
+              "quadrilateral, element, horizon, "
               "bonds; did you "
               "mean "
               "\"horizon\"?"},
@@ -163,7 +164,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"title =", "titel =", "1:1", "did you mean \"title\"?"},
         Wrong{"title = \"Membrane with a hole\"", "", "1:1", "title: missing"},
         Wrong{"\"membrane\"", "\"membran\"", "14:8",
-              "found \"membran\"; expected one of membrane, membrane-bond, pmb, lps, correspondence; did you "
+              "found \"membran\"; expected one of membrane, membrane-bond, pmb, lps, correspondence, "
+              "finite-elements; did you "
               "mean "
               "\"membrane\"?"},
         Wrong{"\"neo-hookean\"", "\"neo-hokean\"", "18", "did you mean \"neo-hookean\"?"},

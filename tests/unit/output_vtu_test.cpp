@@ -141,8 +141,8 @@ TEST(Vtu, RefusesCellsThatItDoesNotKnowOrThatDoNotFit) {
   mesh.cells = {{CellKind::quad, {0, 1, 2, 3}}};
   const auto refused = [&] { return message_of<InputError>([&] { read_vtu(scratch / "a.vtu"); }); };
   write_vtu(scratch / "a.vtu", mesh);
-  replace_array<std::uint8_t>(scratch / "a.vtu", "types", {10});
-  EXPECT_NE(refused().find("type 10; expected bare vertices (1), or lines (3)"), std::string::npos);
+  replace_array<std::uint8_t>(scratch / "a.vtu", "types", {42});
+  EXPECT_NE(refused().find("type 42; expected bare vertices (1), or lines (3)"), std::string::npos);
   write_vtu(scratch / "a.vtu", mesh);
   replace_array<std::uint8_t>(scratch / "a.vtu", "types", {5});  // three corners, where there are four
   EXPECT_NE(refused().find("\"connectivity\""), std::string::npos);
