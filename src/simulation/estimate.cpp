@@ -34,7 +34,7 @@ Footprint footprint(const ModelInput& model) {
   if (model.kind == "lps") return {100, 21};
   if (model.kind == "correspondence")
     return model.variant == "bond-associated" ? Footprint{120, 5, 28} : Footprint{300, 13};
-  return {220, 6};
+  return {250, 6};
 }
 
 double points_along(const Shape& shape, double spacing, std::size_t axis) {

@@ -290,6 +290,27 @@ TEST(BondFailure, CrushedFamiliesAreDebrisForGood) {
   });
 }
 
+// An estimate of frequencies tries large motions.
+TEST(BondFailure, AskingForTheStableStepBreaksNothing) {
+  for_each_model([](const Kind& kind, bool as_list) {
+    auto model = kind.make(sheet_of(as_list), 1);
+    model->set_limits(FailureLimits::uniform(0.028));
+    std::vector<double> u = stretched(*model, 0.02);
+    for (const std::size_t i : model->body().points) u[i] *= 1.5 + model->body().position(i)[0];
+    lose_bonds(*model, u);
+    const double dissipated = model->dissipated_energy(), energy = model->strain_energy(u);
+    EXPECT_GT(dissipated, 0);
+    std::vector<double> force(model->dofs()), bound(model->dofs());
+    for (int times = 0; times < 25; ++times) {
+      EXPECT_FALSE(model->internal_force(u, force));
+      model->stiffness_bound(u, bound);
+      EXPECT_EQ(model->advance(u, force).broken, 0u);
+    }
+    EXPECT_EQ(model->dissipated_energy(), dissipated);
+    EXPECT_EQ(model->strain_energy(u), energy);
+  });
+}
+
 // Where families are compressed so far that their averages are unstable, they change to their deformation
 // gradients, which give the same energy in a homogeneous state.
 TEST(BondFailure, AMembraneKeepsItsEnergyWhenItsFamiliesChange) {
