@@ -37,6 +37,11 @@ void check(const FailureLimits& limits, const Body& body) {
             fmt::format("limit of damage or energy density: found {:g}; expected one above 0", limit));
 }
 
+/// A crushed family may be where its law says nothing: then its energy is not known, and counts as none.
+double finite(double energy) {
+  return std::isfinite(energy) ? energy : 0;
+}
+
 /// Points (ascending) whose bonds are others than these masks said.
 std::vector<std::size_t> changed_since(const std::vector<std::uint8_t>& before, const Body& body) {
   std::vector<std::size_t> points;
@@ -288,7 +293,7 @@ std::vector<std::size_t> BreakingModel::lose(std::vector<LongBond> bonds, std::s
         changed.size(),
         [&](std::size_t begin, std::size_t end) {
           double sum = 0;
-          for (std::size_t n = begin; n < end; ++n) sum += family_energy(changed[n], u);
+          for (std::size_t n = begin; n < end; ++n) sum += finite(family_energy(changed[n], u));
           return sum;
         },
         kLanes);
@@ -322,7 +327,7 @@ bool BreakingModel::count_crushed(std::span<const double> u) {
     ++times_crushed_[i];
   }
   if (!points.empty()) refit(points);
-  for (const std::size_t i : points) dissipated_ -= family_energy(i, u);
+  for (const std::size_t i : points) dissipated_ -= finite(family_energy(i, u));
   return !points.empty();
 }
 

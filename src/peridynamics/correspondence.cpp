@@ -250,9 +250,9 @@ void Correspondence::make_bonds() {
 template <int D>
 void Correspondence::find_crushed(std::size_t begin, std::size_t end, const GradientRows& f) {
   for_each_row(begin, end, [&](std::size_t i, std::size_t row) {
-    if (share_[i] == 1 || times_crushed(i) > 0) return;
-    const bool is_crushed = determinant<D>(f, row) < kCrushed;
-    crushed()[i] = is_crushed ? 1 : 0;
+    if (share_[i] == 1) return;
+    const bool is_crushed = !(determinant<D>(f, row) >= kCrushed);
+    crushed()[i] = is_crushed && times_crushed(i) == 0 ? 1 : 0;
     if (!is_crushed) return;
     for (std::size_t c = 0; c < D * D; ++c) f[c][row] = c % (D + 1) == 0 ? 1 : 0;
   });
