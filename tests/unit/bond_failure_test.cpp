@@ -264,8 +264,8 @@ TEST(BondFailure, LeavesTheStabilisationItsShare) {
   }
 }
 
-// Bonds along x break in all families, which are then turned inside out: all lengths stay. A membrane's family
-// goes over to its deformation gradient first.
+// Bonds along x break in all families, which are then turned inside out: all lengths stay. A membrane's
+// family goes over to its deformation gradient first.
 TEST(BondFailure, CrushedFamiliesAreDebrisForGood) {
   for_each_model([](const Kind& kind, bool as_list) {
     if (kind.name != std::string("correspondence") && kind.name != std::string("membrane")) return;
@@ -345,8 +345,7 @@ TEST(BondFailure, AMembraneTakesFamiliesAtACrackByTheirGradients) {
       if (!exists) cut.insert(i);
     });
     at_crack = cut;
-    for (const std::size_t i : cut)
-      whole.for_each_neighbour(i, [&](std::size_t j) { at_crack.insert(j); });
+    for (const std::size_t i : cut) whole.for_each_neighbour(i, [&](std::size_t j) { at_crack.insert(j); });
     EXPECT_GT(cut.size(), 0u);
     EXPECT_LT(cut.size(), 10u);
     EXPECT_EQ(model.points_by_gradient(), at_crack.size() + 4);  // and the corners
