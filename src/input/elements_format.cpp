@@ -90,7 +90,7 @@ void refuse_bonds(const Case& c) {
   if (c.contact) refuse(c.contact->at, "contact yet; expected a peridynamic model");
   if (!c.impactors.empty()) refuse(c.impactors.front().at, "contact yet; expected a peridynamic model");
   for (const MaterialInput& material : c.materials)
-    if (material.critical_stretch || material.critical_energy_release_rate || material.critical_damage)
+    if (material.breaks() || material.critical_damage)
       refuse(material.at, "bonds that break; expected no critical_stretch and the like");
 }
 

@@ -230,7 +230,14 @@ std::vector<BreakingModel::LongBond> BreakingModel::long_bonds(std::span<const d
   std::vector<LongBond> bonds;
   for (const auto& of_piece : found) bonds.insert(bonds.end(), of_piece.begin(), of_piece.end());
   const std::vector<LongBond> further = bonds_of_loaded_points(u);
+  if (further.empty()) return bonds;
   bonds.insert(bonds.end(), further.begin(), further.end());
+  const auto at = [](const LongBond& bond) { return std::pair(bond.point, bond.bond); };
+  std::stable_sort(bonds.begin(), bonds.end(),
+                   [&](const LongBond& a, const LongBond& b) { return at(a) < at(b); });
+  bonds.erase(std::unique(bonds.begin(), bonds.end(),
+                          [&](const LongBond& a, const LongBond& b) { return at(a) == at(b); }),
+              bonds.end());
   return bonds;
 }
 

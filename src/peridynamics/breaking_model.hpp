@@ -64,7 +64,7 @@ class BreakingModel : public PointModel {
     double excess = 0;  // squared ratio of its stretch to the limit, or ratio of energies, less 1
   };
   /// Bonds to break: those beyond their limit among the groups of points that `beyond` marks, and those of
-  /// points with too much energy; each from one end or from both, or twice.
+  /// points with too much energy; ascending, each from one end or from both.
   [[nodiscard]] std::vector<LongBond> long_bonds(std::span<const double> u) const;
   /// Breaks bonds. Returns the points that have lost some, ascending.
   std::vector<std::size_t> lose(std::vector<LongBond> bonds, std::span<const double> u);

@@ -131,7 +131,7 @@ std::vector<ModelField> Membrane::fields(std::span<const double> u) {
   ModelField energy{"strain_energy_density", 1, {}, "J/m^3"}, stress{"nominal_stress", 9, {}, "Pa"},
       weight{"weight_minimum", 1, {}, {}};
   for (const std::size_t i : body().points) {
-    energy.values.push_back(share_left(i) * planes_.energy_density[i]);
+    energy.values.push_back(energy_share(i) * planes_.energy_density[i]);
     weight.values.push_back(smallest_weight_[i]);
     const Eigen::Matrix2d p = nominal_stress(i, u);
     stress.values.insert(stress.values.end(), {p(0, 0), p(0, 1), 0, p(1, 0), p(1, 1), 0, 0, 0, 0});

@@ -111,16 +111,17 @@ class Membrane final : public BreakingModel {
   [[nodiscard]] double share_left(const WholeFamily& family, const std::vector<bool>& exists,
                                   std::size_t material) const override;
   /// Of a body point's energy, since bonds broke.
-  [[nodiscard]] double share_left(std::size_t point) const {
+  [[nodiscard]] double energy_share(std::size_t point) const {
     return energy_volume_[point] / body().volume[point];
   }
   [[nodiscard]] bool is_sound(std::size_t point) const {
-    return share_left(point) == 1 && times_crushed(point) == 0;
+    return energy_share(point) == 1 && times_crushed(point) == 0;
   }
   void set_coefficients(std::size_t point, const Moments& coefficients);
   [[nodiscard]] Moments coefficients(std::size_t point) const;
   void find_intact_blocks(const Moments& whole);
-  void add_listed_family(std::size_t point, const FamilyWeights& weights, std::vector<MembraneBond> bonds);
+  void add_listed_family(std::size_t point, const FamilyWeights& weights, const Eigen::Matrix2d& shape,
+                         std::vector<MembraneBond> bonds);
   void keep_listed_family(ListedFamily family, const ListedFamilyBonds& bonds);
   void sort_incoming();
   [[nodiscard]] std::vector<MembraneBond> bonds_of(std::size_t point) const;

@@ -19,22 +19,22 @@ constexpr double kCutFamilyStabilisation = 0.1;
 // lattice's bonds that do not have one of 0.02 and more.
 constexpr double kFlatFamily = 1e-4;
 
-// Shares of a family's base weights: with less left it takes its averages from the deformation gradient, or
-// has no energy of its own any more (theory, section 5, broken bonds).
+// Share of a family's base weights: with less left it has no energy of its own any more (theory, section 5,
+// broken bonds).
 constexpr double kLostFamily = 0.1;
 
 Eigen::Vector2d plane(const Point& p) {
   return {p[0], p[1]};
 }
 
-/// (sum w n n^T)^-1; infinite for bonds on one line.
-Eigen::Matrix2d inverse_shape(const std::vector<PlaneBond>& bonds, const FamilyWeights& weights) {
+/// sum w n n^T of bonds in these directions.
+Eigen::Matrix2d shape_tensor(const std::vector<PlaneBond>& bonds, const FamilyWeights& weights) {
   Eigen::Matrix2d shape = Eigen::Matrix2d::Zero();
   for (std::size_t j = 0; j < bonds.size(); ++j) {
     const Eigen::Vector2d n = Eigen::Vector2d(bonds[j].x, bonds[j].y).normalized();
     shape += weights.weight[j] * n * n.transpose();
   }
-  return shape.inverse();
+  return shape;
 }
 
 }  // namespace
@@ -170,7 +170,7 @@ void Membrane::fit(std::size_t point) {
   const double weight = total_weight(bonds);
   if (base_weight_[point] == 0) {
     base_weight_[point] = weight;
-    base_trace_[point] = inverse_shape(bonds, base_weights(bonds)).trace();
+    base_trace_[point] = shape_tensor(bonds, base_weights(bonds)).inverse().trace();
   }
   const double share = weight > 0 ? weight / base_weight_[point] : 0;
   const bool at_interface = !body().interface_of(point).empty();
@@ -187,7 +187,8 @@ void Membrane::fit(std::size_t point) {
   const bool by_formula = weights.kind == FamilyWeights::Kind::smooth && !at_interface && !lost;
   set_coefficients(point, by_formula ? WeightFormula::coefficients(weights.coefficients) : Moments{});
   if (by_formula) return;
-  add_listed_family(point, weights, lost ? std::vector<MembraneBond>{} : bonds_of(point));
+  add_listed_family(point, weights, shape_tensor(bonds, weights),
+                    lost ? std::vector<MembraneBond>{} : bonds_of(point));
 }
 
 /// Listed families that have kept their bonds stay as they are.
@@ -229,18 +230,15 @@ bool Membrane::is_at_crack(std::size_t point) const {
   return at;
 }
 
+/// `shape`: sum w n n^T.
 void Membrane::add_listed_family(std::size_t point, const FamilyWeights& weights,
-                                 std::vector<MembraneBond> bonds) {
+                                 const Eigen::Matrix2d& shape, std::vector<MembraneBond> bonds) {
   ListedFamily family;
   family.point = point;
   family.by_least_squares = weights.kind == FamilyWeights::Kind::listed;
   family.by_gradient = weights.kind == FamilyWeights::Kind::gradient;
-  Eigen::Matrix2d shape = Eigen::Matrix2d::Zero();
-  for (std::size_t j = 0; j < bonds.size(); ++j) {
-    bonds[j].weight = weights.weight[j];
-    const Eigen::Vector2d n = bonds[j].reference.normalized();
-    shape += weights.weight[j] * n * n.transpose();
-  }
+  for (std::size_t j = 0; j < bonds.size(); ++j) bonds[j].weight = weights.weight[j];
+  if (bonds.empty()) family.by_gradient = false;
   if (family.by_gradient && shape.determinant() < kFlatFamily) {
     family.by_gradient = false;  // no weights, no gradient: the point hangs on its neighbours' forces alone
     bonds.clear();

@@ -190,8 +190,9 @@ void TimeSteps::show(const State& from, const State& end, const Constraints::Pre
     observer_.reached(state, constraints_, output);
   }
   constraints_.set(at_end);
-  State again = end;
-  if (inside) static_cast<void>(evaluate(again));
+  if (!inside) return;
+  State again = end;  // the forces there are what goes on
+  static_cast<void>(evaluate(again));
 }
 
 void TimeSteps::accept(State end) {
@@ -199,12 +200,7 @@ void TimeSteps::accept(State end) {
   check_energy();
   const bool output = outputs_.due(state_.parameter), row = history_.due(state_.parameter);
   if (output) check_points(state_);
-  const bool broken = [this] {
-    const double before = model_.dissipated_energy();
-    break_bonds();
-    return model_.dissipated_energy() != before;
-  }();
-  if (broken) {
+  if (break_bonds()) {
     balance(state_);
     method_->restart(state_, internal_, force_);
   } else {
@@ -213,12 +209,13 @@ void TimeSteps::accept(State end) {
   if (output || row) observer_.reached(state_, constraints_, output);
 }
 
-void TimeSteps::break_bonds() {
+bool TimeSteps::break_bonds() {
   const Passage passage = model_.advance(state_.u, internal_);
   if (passage.breakdown) fail(state_, text(*passage.breakdown));
-  if (passage.broken == 0) return;
+  if (passage.broken == 0) return false;
   ++state_.evaluations;
   take_forces(state_);
+  return true;
 }
 
 std::optional<Breakdown> TimeSteps::evaluate(State& state) {

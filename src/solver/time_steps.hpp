@@ -97,7 +97,8 @@ class TimeSteps {
   void lengthen();
   void accept(State end);
   void show(const State& from, const State& end, const Constraints::Prescribed& start);
-  void break_bonds();
+  /// Returns whether some broke.
+  bool break_bonds();
   std::optional<Breakdown> evaluate(State& state);
   void take_forces(const State& state);
   void balance(State& state);

@@ -66,6 +66,7 @@ MISTAKES = [
     ("a horizon for elements", MESHED, ELEMENTS, ELEMENTS + '\nhorizon = "3 dx"', "horizon", "belongs to points"),
     ("a hole in a mesh", MESHED, "[solver]", '[[hole]]\ndisc = { radius = "1 cm" }\n\n[solver]', "[[hole]]", "has no holes"),
     ("a limit of elements", MESHED, 'density = "1100 kg/m^3"', 'density = "1100 kg/m^3"\ncritical_stretch = 1', "[material", "has no bonds that break"),
+    ("another limit of elements", MESHED, 'density = "1100 kg/m^3"', 'density = "1100 kg/m^3"\ncritical_energy_density = "1 MPa"', "[material", "has no bonds that break"),
     ("a layer of elements", MESHED, 'displacement = ["(stretch - 1)*x", "(stretch - 1)*y"]', 'layer = "1 mm"\ntraction = ["1 MPa", 0]', "[[load]]", "has no layers of points"),
     ("damage of elements", MESHED, "[solver]", '[output]\nfields = ["damage"]\n\n[solver]', "[output]", 'has no field "damage"'),
     ("an overload of elements", MESHED, 'kind = "reaction"\non = "right"', 'kind = "overload"', "[[probe]]", 'has no "overload" to be followed'),

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 
 #include "linalg/gmres.hpp"
+#include "support/matrices.hpp"
 #include "support/random.hpp"
 
 namespace riven::testing {
@@ -22,19 +23,6 @@ Eigen::MatrixXd chain(Random& random, int n, bool grounded) {
     k(i - 1, i) -= spring;
   }
   return k;
-}
-
-SymmetricMatrix sparse(const Eigen::MatrixXd& a) {
-  SymmetricMatrix m;
-  for (Eigen::Index i = 0; i < a.rows(); ++i) {
-    for (Eigen::Index j = 0; j <= i; ++j)
-      if (a(i, j) != 0 || i == j) {
-        m.column.push_back(static_cast<int>(j));
-        m.value.push_back(a(i, j));
-      }
-    m.begin.push_back(m.column.size());
-  }
-  return m;
 }
 
 Eigen::MatrixXd kronecker(const Eigen::MatrixXd& time, const Eigen::MatrixXd& space) {

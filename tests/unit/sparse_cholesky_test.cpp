@@ -4,23 +4,11 @@
 
 #include <Eigen/Dense>
 
+#include "support/matrices.hpp"
 #include "support/random.hpp"
 
 namespace riven::testing {
 namespace {
-
-SymmetricMatrix sparse(const Eigen::MatrixXd& a) {
-  SymmetricMatrix m;
-  for (Eigen::Index i = 0; i < a.rows(); ++i) {
-    for (Eigen::Index j = 0; j <= i; ++j)
-      if (a(i, j) != 0 || i == j) {
-        m.column.push_back(static_cast<int>(j));
-        m.value.push_back(a(i, j));
-      }
-    m.begin.push_back(m.column.size());
-  }
-  return m;
-}
 
 /// Symmetric with a few entries per row; eigenvalues of a few units about `middle`.
 Eigen::MatrixXd random_matrix(Random& random, int n, double middle) {

@@ -17,6 +17,7 @@
 #include "solver/space_time.hpp"
 #include "solver/velocity_verlet.hpp"
 #include "support/bodies.hpp"
+#include "support/differences.hpp"
 #include "support/laws.hpp"
 #include "support/loads.hpp"
 
@@ -154,15 +155,6 @@ std::vector<double> of_points(const Model& model, const std::vector<double>& u) 
   std::vector<double> values;
   for (const Point& d : model.displacements(u)) values.insert(values.end(), d.begin(), d.begin() + 2);
   return values;
-}
-
-double relative_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  double difference = 0, norm = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    difference += std::pow(a[i] - b[i], 2);
-    norm += b[i] * b[i];
-  }
-  return std::sqrt(difference / norm);
 }
 
 class EverySolver : public ::testing::TestWithParam<std::size_t> {};

@@ -15,6 +15,7 @@
 #include "solver/space_time.hpp"
 #include "solver/velocity_verlet.hpp"
 #include "support/bodies.hpp"
+#include "support/differences.hpp"
 #include "support/laws.hpp"
 
 namespace riven::testing {
@@ -89,15 +90,6 @@ State by_verlet(const ModelCase& row, double h) {
   return march(*problem.model, problem.constraints, settings, nobody);
 }
 
-double relative(const std::vector<double>& a, const std::vector<double>& b) {
-  double difference = 0, norm = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    difference += std::pow(a[i] - b[i], 2);
-    norm += b[i] * b[i];
-  }
-  return std::sqrt(difference / norm);
-}
-
 class SpaceTimeWaves : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(SpaceTimeWaves, AreThoseOfVerletToThirdOrder) {
@@ -107,8 +99,8 @@ TEST_P(SpaceTimeWaves, AreThoseOfVerletToThirdOrder) {
   std::vector<double> exact = fine.u;
   for (std::size_t i = 0; i < exact.size(); ++i) exact[i] += (fine.u[i] - coarse.u[i]) / 3;
   for (const SlabKind scheme : {SlabKind::two_field, SlabKind::single_field}) {
-    const double e1 = relative(by_slabs(row, scheme, kEnd / 80).u, exact),
-                 e2 = relative(by_slabs(row, scheme, kEnd / 160).u, exact);
+    const double e1 = relative_difference(by_slabs(row, scheme, kEnd / 80).u, exact),
+                 e2 = relative_difference(by_slabs(row, scheme, kEnd / 160).u, exact);
     EXPECT_LT(e2, 1e-5);  // measured 1.8e-6 to 6.8e-6 (two-field), half of that (single-field)
     EXPECT_NEAR(std::log2(e1 / e2), 3, 0.1);  // measured 2.98 to 2.99
   }
@@ -152,7 +144,8 @@ TEST_P(SpaceTimeWaves, AreThoseOfGeneralisedAlphaToSecondOrder) {
     settings.step = kEnd / steps;
     settings.initial_v = problem.velocity;
     Observer nobody;
-    return relative(generalised_alpha(*problem.model, problem.constraints, settings, nobody).u, exact.u);
+    return relative_difference(generalised_alpha(*problem.model, problem.constraints, settings, nobody).u,
+                               exact.u);
   };
   const double e1 = error(100), e2 = error(200);
   EXPECT_NEAR(std::log2(e1 / e2), 2, 0.1);  // measured 1.98 to 1.99
