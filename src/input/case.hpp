@@ -48,6 +48,7 @@ struct PointsInput {               // [geometry] points = {...}, or mesh = {...}
 };
 
 class Surface;
+struct Mesh;
 
 struct SurfaceInput {  // [geometry] surface = {...}
   std::string file;    // STL, relative to the case file
@@ -59,10 +60,12 @@ struct ArchInput {                       // [geometry] arch = {...}
   double span = 0, rise = 0, depth = 0;  // m; of its middle line, and across it in the plane
 };
 
-struct ElementsInput {            // [geometry] with elements instead of points
-  std::vector<int> along;         // their numbers along the axes of the shape
-  std::optional<ArchInput> arch;  // else of the corners, else of a box
-  std::vector<Point> corners;     // m; of a quadrilateral
+struct ElementsInput {               // [geometry] with elements instead of points
+  std::vector<int> along;            // their numbers along the axes of the shape
+  std::optional<ArchInput> arch;     // else of the corners, else of a box
+  std::vector<Point> corners;        // m; of a quadrilateral
+  std::string file, unit;            // or of Gmsh's: MSH, relative to the case file, and of its coordinates
+  std::shared_ptr<const Mesh> mesh;  // what the file holds
 };
 
 struct GeometryInput {   // [geometry]
@@ -140,6 +143,11 @@ struct ModelInput {  // [model]
   Location at;
 };
 
+struct RelaxationInput {  // an entry of a material's relaxation
+  double share = 0;       // of the isochoric stiffness that relaxes
+  double time = 0;        // s
+};
+
 struct MaterialInput {  // [material.NAME]
   std::string name;
   std::string law;     // a name among those of material/law.hpp
@@ -147,10 +155,11 @@ struct MaterialInput {  // [material.NAME]
   // What the law's own keys say, in SI, by key; a key that is not given has no value and an empty list.
   std::map<std::string, std::optional<double>> numbers;
   std::map<std::string, std::vector<double>> lists;
-  std::optional<double> bulk_modulus;      // Pa; without, a rubber is incompressible
-  std::string volumetric;                  // "quadratic" (if empty, too) or "logarithmic"
-  std::vector<Named> on;                   // sets whose points are of it; empty: all that no other one has
-  std::optional<double> critical_stretch;  // elongation over length
+  std::optional<double> bulk_modulus;       // Pa; without, a rubber is incompressible
+  std::string volumetric;                   // "quadratic" (if empty, too) or "logarithmic"
+  std::vector<RelaxationInput> relaxation;  // Prony series; empty: elastic
+  std::vector<Named> on;                    // sets whose points are of it; empty: all that no other one has
+  std::optional<double> critical_stretch;   // elongation over length
   std::optional<double> critical_energy_release_rate;  // J/m^2
   std::optional<double> critical_damage;
   std::optional<double> critical_energy_density;  // J/m^3
@@ -184,13 +193,14 @@ struct ComponentInput {
   std::optional<Expression> value;  // nothing: "free"
 };
 
-struct LoadInput {        // [[load]]: exactly one of the four, with one entry per dimension
+struct LoadInput {        // [[load]]: exactly one of the five; but for the pressure, an entry per dimension
   std::vector<Named> on;  // named edges of the box or sets; of a body force: empty for the whole body
   std::vector<ComponentInput> displacement, velocity, traction, body_force;
-  std::optional<double> layer;  // m; of a traction, the spacing unless given
+  std::optional<Expression> pressure;  // Pa; normal to the deformed boundary, into the body
+  std::optional<double> layer;         // m; of a traction, the spacing unless given
   Location at;
 
-  [[nodiscard]] bool is_force() const { return !traction.empty() || !body_force.empty(); }
+  [[nodiscard]] bool is_force() const { return !traction.empty() || !body_force.empty() || pressure; }
   /// The one that is given.
   [[nodiscard]] const std::vector<ComponentInput>& components() const {
     for (const auto* given : {&velocity, &traction, &body_force})
@@ -226,6 +236,9 @@ struct SolverInput {  // [solver]
   int gauss_points = 3;              // of the latter
   double step_tolerance = 1e-4;      // of space-time: energy of the jumps / energy of the motion
   double spectral_radius = 0.8;      // of generalised-alpha
+  bool inertia = true;               // of space-time; without, the body is at rest at any time
+  std::string control = "load";      // of newton; or "arc-length"
+  int max_steps = 0;                 // of the arc; 0: none of it
   Location at;
 
   static const std::vector<std::string>& methods_in_time() {
@@ -255,13 +268,20 @@ struct PlaneInput {
   std::vector<double> normal;  // out of the impactor, of any length
 };
 
-struct ImpactorInput {  // [[impactor]]: rigid, a sphere or a plane
+struct FlatInput {
+  Point from{}, to{};  // in two dimensions: ends of the flat, the impactor to its left (m)
+};
+
+struct ImpactorInput {  // [[impactor]]: rigid, a sphere, a plane or a flat
   std::string name;
   std::optional<SphereInput> sphere;
   std::optional<PlaneInput> plane;
-  std::optional<double> mass;            // kg: free; without, the velocity is prescribed
-  std::vector<ComponentInput> velocity;  // one per dimension, or none: at rest
-  double stiffness = 1;                  // times what follows from the bonds
+  std::optional<FlatInput> flat;
+  std::optional<double> mass;                // kg: free; without, the velocity is prescribed
+  std::vector<ComponentInput> velocity;      // one per dimension, or none: at rest
+  std::vector<ComponentInput> displacement;  // or this, likewise
+  std::string surface = "frictionless";      // or "sticking"
+  double stiffness = 1;                      // times what follows from the bonds
   Location at;
 };
 

@@ -30,6 +30,8 @@ class ContactModel final : public Model {
   [[nodiscard]] std::size_t dofs() const override;
   [[nodiscard]] std::optional<Breakdown> internal_force(std::span<const double> u,
                                                         std::span<double> force) override;
+  void go_on(double dt) override { model_->go_on(dt); }
+  void go_back() override { model_->go_back(); }
   [[nodiscard]] Passage advance(std::span<const double> u, std::span<double> force) override;
   [[nodiscard]] double overload(std::span<const double> u) const override { return model_->overload(own(u)); }
   [[nodiscard]] double dissipated_energy() const override { return model_->dissipated_energy(); }

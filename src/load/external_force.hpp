@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "model/model.hpp"
+
 namespace riven {
 
 /// A force on a body from outside of its model: a traction, a body force, a contact. Stands in no relation to
@@ -15,6 +17,9 @@ class ExternalForce {
   /// statics. `parameter`: the time (s) in dynamics, the stretch in statics.
   virtual void add(std::span<const double> u, std::span<const double> v, double parameter,
                    std::span<double> force) = 0;
+  /// Appends blocks of the derivative -d(force)/du (N/m) in a state; none for dead loads. They couple no
+  /// entries that the model's tangent does not. Of forces without energy the symmetric part.
+  virtual void tangent(std::span<const double> /*u*/, double /*parameter*/, TangentBlocks& /*to*/) const {}
   /// Work (J) that comes from outside on the way from one state, at parameter `before`, to the next.
   [[nodiscard]] virtual double work(std::span<const double> u_before, double before,
                                     std::span<const double> u, double parameter) const = 0;

@@ -59,6 +59,12 @@ class Model {
   [[nodiscard]] virtual std::optional<Breakdown> internal_force(std::span<const double> u,
                                                                 std::span<double> force) = 0;
 
+  /// Of models whose force depends on the way: the next forces are of states `dt` (s) after the state of the
+  /// last `internal_force`. Without a call they are of that state's own moment.
+  virtual void go_on(double /*dt*/) {}
+  /// The next forces start again from the state of the last `advance`, at its moment.
+  virtual void go_back() {}
+
   /// The state of the last `internal_force` is one that the body goes through, not one that a solver only
   /// tried: what is irreversible happens, such as bonds that break. `force`: of that evaluation; brought up
   /// to date.

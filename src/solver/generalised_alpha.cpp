@@ -202,7 +202,7 @@ bool GeneralisedAlpha::factor() {
   ++evaluations_;
   static_cast<void>(model_.internal_force(state_, force));  // as before: it was evaluated
   if (!system_) system_.emplace(model_, constraints_, state_, mass_);
-  system_->assemble(state_);
+  system_->assemble(state_, external_, end_);
   return system_->factor((1 - alpha_m_) / ((1 - alpha_f_) * beta_ * h_ * h_), mass_);
 }
 

@@ -32,6 +32,7 @@ Newton::Newton(Model& model, Constraints& constraints, const LoadStepSettings& s
     : model_(model),
       constraints_(constraints),
       tolerance_(settings.tolerance),
+      external_(settings.external),
       forces_(model, constraints, settings.external) {}
 
 void Newton::begin(const State& state) {
@@ -64,7 +65,7 @@ Iteration Newton::iterate(State& state, long number) {
 /// positive definite.
 bool Newton::factor(const State& state) {
   if (!system_) system_.emplace(model_, constraints_, state.u);
-  system_->assemble(state.u);
+  system_->assemble(state.u, external_, constraints_.parameter());
   diagonal_.assign(forces_.row_bounds().begin(), forces_.row_bounds().end());
   const double least = kLeastBound * *std::max_element(diagonal_.begin(), diagonal_.end());
   for (double& entry : diagonal_) entry = std::max(entry, least);

@@ -37,6 +37,7 @@ class Newton final : public Equilibrium {
   Model& model_;
   Constraints& constraints_;
   double tolerance_;
+  ExternalForces external_;
   FreeForces forces_;
   std::optional<TangentSystem> system_;
   std::vector<double> diagonal_;  // of what is added to the tangent, times the shift (N/m)

@@ -41,6 +41,8 @@ class Slab {
   [[nodiscard]] const SlabScheme& scheme() const { return scheme_; }
   [[nodiscard]] const std::array<std::vector<double>, 2>& unknowns() const { return z_; }
   [[nodiscard]] double length() const { return h_; }
+  /// At slab time s (s).
+  [[nodiscard]] double time(double s) const { return start_ + s * h_; }
   /// Of the free entries (kg); 0 elsewhere.
   [[nodiscard]] std::span<const double> mass() const { return mass_; }
 

@@ -47,6 +47,7 @@ class SpaceTime final : public TimeStepMethod {
   SpaceTime(Model& model, Constraints& constraints, const SpaceTimeSettings& settings)
       : model_(model),
         constraints_(constraints),
+        external_(settings.external),
         tolerance_(settings.tolerance),
         slab_(model, constraints,
               settings.scheme == SlabKind::two_field ? two_field_scheme()
@@ -92,6 +93,7 @@ class SpaceTime final : public TimeStepMethod {
     each("slab.internal", self.internal_);
     each("slab.frozen_at", self.frozen_at_);
     each("slab.frozen_step", self.frozen_step_);
+    each("slab.frozen_time", self.frozen_time_);
   }
 
   std::optional<Breakdown> evaluate() {
@@ -108,7 +110,7 @@ class SpaceTime final : public TimeStepMethod {
 
   void freeze();
   void thaw();
-  bool assemble(std::span<const double> u);
+  bool assemble(std::span<const double> u, double time);
   void factor();
   void find_direction(Pair& direction);
   void find_exact(std::span<double> x);
@@ -117,6 +119,7 @@ class SpaceTime final : public TimeStepMethod {
 
   Model& model_;
   Constraints& constraints_;
+  ExternalForces external_;
   double tolerance_;
   Slab slab_;
   SlabOperator operator_;
@@ -124,7 +127,7 @@ class SpaceTime final : public TimeStepMethod {
   std::optional<TangentMatrix> tangent_;
   std::vector<double> unknown_mass_;                 // of the tangent's rows (kg)
   std::vector<double> frozen_at_;                    // state of the operator's tangent; empty: there is none
-  double frozen_step_ = 0;                           // s
+  double frozen_step_ = 0, frozen_time_ = 0;         // s
   double least_force_ = 0;                           // N
   double first_residual_ = 0;                        // of the slab (N)
   bool fresh_ = false, exact_ = false;               // the operator is this slab's; the Jacobian is exact
@@ -188,10 +191,12 @@ void SpaceTime::freeze() {
   frozen_at_.resize(model_.dofs());
   slab_.displacement(0.5, frozen_at_);
   ++evaluations_;
-  if (!assemble(frozen_at_)) {
+  frozen_time_ = slab_.time(0.5);
+  if (!assemble(frozen_at_, frozen_time_)) {
     slab_.displacement(0, frozen_at_);
+    frozen_time_ = slab_.time(0);
     ++evaluations_;
-    static_cast<void>(assemble(frozen_at_));
+    static_cast<void>(assemble(frozen_at_, frozen_time_));
   }
   frozen_step_ = slab_.length();
   fresh_ = true;
@@ -200,11 +205,11 @@ void SpaceTime::freeze() {
 
 /// As `freeze` left it, after a run has been resumed.
 void SpaceTime::thaw() {
-  static_cast<void>(assemble(frozen_at_));
+  static_cast<void>(assemble(frozen_at_, frozen_time_));
   factor();
 }
 
-bool SpaceTime::assemble(std::span<const double> u) {
+bool SpaceTime::assemble(std::span<const double> u, double time) {
   std::vector<double> force(u.size());
   if (model_.internal_force(u, force)) return false;
   if (!tangent_) {
@@ -213,7 +218,7 @@ bool SpaceTime::assemble(std::span<const double> u) {
     unknown_mass_.clear();
     for (const std::size_t entry : tangent_->entries()) unknown_mass_.push_back(slab_.mass()[entry]);
   }
-  tangent_->assemble(u);
+  tangent_->assemble(u, external_, time);
   return true;
 }
 
@@ -252,7 +257,7 @@ void SpaceTime::find_exact(std::span<double> x) {
   for (std::size_t q = 0; q < slab_.scheme().stages.size(); ++q) {
     slab_.stage(q, state);
     ++evaluations_;
-    static_cast<void>(assemble(state));
+    static_cast<void>(assemble(state, slab_.time(slab_.scheme().stages[q].s)));
     stage_tangents_.push_back(tangent_->matrix().value);
   }
   gmres([this](std::span<double> y) { multiply_exact(y); }, [this](std::span<double> y) { solve_frozen(y); },

@@ -109,19 +109,28 @@ void TangentMatrix::find_pattern(std::span<const double> u) {
 
 void TangentMatrix::assemble(std::span<const double> u) {
   std::fill(matrix_.value.begin(), matrix_.value.end(), 0.0);
-  for_each_batch(u, [&](const std::vector<TangentBlocks>& pieces) {
-    const std::vector<std::vector<Row>> lists = rows_of(pieces);
-    parallel_for(kShares, [&](std::ptrdiff_t share) {
-      auto list = lists.begin();
-      for (const TangentBlocks& piece : pieces) {
-        const double* block = piece.values.data();
-        for (std::size_t b = 0; b + 1 < piece.begin.size(); ++b, ++list) {
-          const std::size_t size = piece.begin[b + 1] - piece.begin[b];
-          add(*list, block, size, static_cast<int>(share));
-          block += size * size;
-        }
+  for_each_batch(u, [&](const std::vector<TangentBlocks>& pieces) { add(pieces); });
+}
+
+void TangentMatrix::assemble(std::span<const double> u, const ExternalForces& external, double parameter) {
+  assemble(u);
+  std::vector<TangentBlocks> pieces(1);
+  for (const auto& force : external) force->tangent(u, parameter, pieces.front());
+  if (!pieces.front().dofs.empty()) add(pieces);
+}
+
+void TangentMatrix::add(const std::vector<TangentBlocks>& pieces) {
+  const std::vector<std::vector<Row>> lists = rows_of(pieces);
+  parallel_for(kShares, [&](std::ptrdiff_t share) {
+    auto list = lists.begin();
+    for (const TangentBlocks& piece : pieces) {
+      const double* block = piece.values.data();
+      for (std::size_t b = 0; b + 1 < piece.begin.size(); ++b, ++list) {
+        const std::size_t size = piece.begin[b + 1] - piece.begin[b];
+        add(*list, block, size, static_cast<int>(share));
+        block += size * size;
       }
-    });
+    }
   });
 }
 

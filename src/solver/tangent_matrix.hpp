@@ -5,6 +5,7 @@
 
 #include "linalg/symmetric_matrix.hpp"
 #include "load/constraints.hpp"
+#include "load/external_force.hpp"
 #include "model/model.hpp"
 
 namespace riven {
@@ -20,6 +21,8 @@ class TangentMatrix {
 
   /// Sums the tangent of a state, that of the last force evaluation.
   void assemble(std::span<const double> u);
+  /// The same with what external forces add.
+  void assemble(std::span<const double> u, const ExternalForces& external, double parameter);
 
   [[nodiscard]] const SymmetricMatrix& matrix() const { return matrix_; }
   /// To add to the diagonal in place, and take it away again.
@@ -45,6 +48,7 @@ class TangentMatrix {
                        std::span<const double> mass);
   [[nodiscard]] std::vector<std::vector<Row>> rows_of(const std::vector<TangentBlocks>& pieces) const;
   void find_pattern(std::span<const double> u);
+  void add(const std::vector<TangentBlocks>& pieces);
   void add(const std::vector<Row>& rows, const double* block, std::size_t size, int share);
 
   const Model& model_;

@@ -14,6 +14,9 @@ class TangentSystem {
 
   /// Sums the tangent of a state, that of the last force evaluation.
   void assemble(std::span<const double> u) { tangent_.assemble(u); }
+  void assemble(std::span<const double> u, const ExternalForces& external, double parameter) {
+    tangent_.assemble(u, external, parameter);
+  }
   /// Factors the tangent plus `shift` times `diagonal`, which has an entry per entry of the state (N/m).
   /// False unless the sum is positive definite.
   [[nodiscard]] bool factor(double shift, std::span<const double> diagonal);
