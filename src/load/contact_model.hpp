@@ -62,6 +62,7 @@ class ContactModel final : public Model {
   [[nodiscard]] std::vector<std::string> describe() const override;
   [[nodiscard]] std::size_t points() const override { return model_->points(); }
   [[nodiscard]] std::size_t bonds() const override { return model_->bonds(); }
+  [[nodiscard]] bool has_memory() const override { return model_->has_memory(); }
 
   [[nodiscard]] const std::vector<Impactor>& impactors() const { return impactors_; }
   /// First entry of an impactor in a state.

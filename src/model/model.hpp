@@ -127,6 +127,9 @@ class Model {
   /// Points, and directed bonds that one force evaluation visits.
   [[nodiscard]] virtual std::size_t points() const = 0;
   [[nodiscard]] virtual std::size_t bonds() const = 0;
+
+  /// Whether the force depends on the states before and the time between them, as `go_on` says.
+  [[nodiscard]] virtual bool has_memory() const { return false; }
 };
 
 }  // namespace riven
