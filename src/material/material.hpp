@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "material/law.hpp"
 #include "material/response.hpp"
@@ -32,6 +33,12 @@ struct SmallStrain {
   [[nodiscard]] double longitudinal() const { return bulk + 4.0 / 3 * shear; }
 };
 
+/// A branch of a Prony series: the share of the isochoric stress that relaxes, and its time.
+struct Relaxation {
+  double share = 0;
+  double time = 0;  // s
+};
+
 /// A constitutive law with its density; knows nothing of bodies and solvers. Rubber materials theory,
 /// sections 2 and 3.
 struct Material {
@@ -39,6 +46,9 @@ struct Material {
   Law law;
   double density = 0;                      // kg/m^3
   std::optional<Volumetric> volumetric{};  // of a law of invariants or stretches; without, incompressible
+  /// Of a law of invariants or stretches; empty: elastic. What follows below is its instantaneous response;
+  /// `Viscoelastic` has the rest.
+  std::vector<Relaxation> relaxation{};
 
   [[nodiscard]] bool incompressible() const;
   /// Whether a rotation of the body only rotates its stress.
