@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "fem/element_law.hpp"
+#include "fem/point_memory.hpp"
 
 namespace riven {
 
@@ -32,6 +33,11 @@ std::vector<ElementLaw> element_laws(const FiniteElementsSettings& settings, int
           fmt::format("material {} is incompressible, and its pressure does not follow from the "
                       "deformation; expected a bulk_modulus, or plane stress",
                       material.name));
+    if (!material.relaxation.empty() && !has_isochoric_part(material))
+      throw InputError(fmt::format(
+          "material {} relaxes, but its law has no part of the shape alone that could; expected one with a "
+          "bulk_modulus of its own, such as \"neo-hookean\"",
+          material.name));
     const bool mean = material.volumetric && !sheet && settings.dilatation != Dilatation::full;
     any_mean = any_mean || mean;
     laws.emplace_back(material, kinematics, mean);
@@ -60,6 +66,7 @@ class FiniteElements::Kernel {
   [[nodiscard]] virtual std::vector<ModelField> fields(std::span<const double> u) const = 0;
   std::vector<double> lumped;    // m^3, of each element's nodes
   std::vector<ElementLaw> laws;  // by material
+  PointMemory memory;
 };
 
 template <class E>
@@ -78,6 +85,7 @@ class FiniteElements::KernelOf final : public Kernel {
     make_slopes();
     make_pieces();
     make_gather();
+    make_memory();
     element_force_.resize(mesh.corner.size() * D);
     element_energy_.resize(mesh.elements());
   }
@@ -155,6 +163,19 @@ class FiniteElements::KernelOf final : public Kernel {
   void make_slopes();
   void make_pieces();
   void make_gather();
+  void make_memory();
+  /// Where what a quadrature point remembers begins.
+  [[nodiscard]] std::size_t memory_of(std::size_t e, std::size_t q) const {
+    const ElementLaw& law = law_of(e);
+    return law.viscous ? memory_begin_[e] + q * law.viscous->memory() : 0;
+  }
+  /// What its past makes of the next forces.
+  [[nodiscard]] ElementLaw::Step step_of(std::size_t e, std::size_t q) const {
+    return law_of(e).step(memory.start() + memory_of(e, q), memory.elapsed());
+  }
+  void respond(const ElementLaw& law, std::size_t e, std::size_t at,
+               const std::array<double*, kComponents>& f, const std::array<double*, kComponents>& p,
+               double* energy);
   std::optional<std::size_t> sweep(std::span<const double> u);
   [[nodiscard]] std::size_t sweep_piece(const Piece& piece, std::span<const double> u);
   void add_mean(const ElementLaw& law, std::size_t e, std::size_t at,
@@ -169,10 +190,11 @@ class FiniteElements::KernelOf final : public Kernel {
   std::vector<double> volume_;      // of elements (m^3)
   std::vector<std::size_t> order_;  // elements by material
   std::vector<Piece> pieces_;
-  std::vector<std::size_t> first_;      // of each node, in `slot_`
-  std::vector<std::size_t> slot_;       // element times nodes plus node of the element
-  std::vector<double> element_force_;   // of element, node, direction (N)
-  std::vector<double> element_energy_;  // J
+  std::vector<std::size_t> first_;         // of each node, in `slot_`
+  std::vector<std::size_t> memory_begin_;  // of elements
+  std::vector<std::size_t> slot_;          // element times nodes plus node of the element
+  std::vector<double> element_force_;      // of element, node, direction (N)
+  std::vector<double> element_energy_;     // J
 };
 
 template <class E>
@@ -214,6 +236,20 @@ void FiniteElements::KernelOf<E>::make_gather() {
   slot_.resize(mesh_.corner.size());
   std::vector<std::size_t> next = first_;
   for (std::size_t s = 0; s < slot_.size(); ++s) slot_[next[mesh_.corner[s]]++] = s;
+}
+
+template <class E>
+void FiniteElements::KernelOf<E>::make_memory() {
+  std::vector<double> at_rest;
+  for (std::size_t e = 0; e < mesh_.elements(); ++e) {
+    memory_begin_.push_back(at_rest.size());
+    const std::optional<Viscoelastic>& viscous = law_of(e).viscous;
+    if (!viscous) continue;
+    const std::size_t each = viscous->memory();
+    at_rest.resize(at_rest.size() + kPoints * each);
+    for (std::size_t q = 0; q < kPoints; ++q) viscous->forget(at_rest.data() + memory_of(e, q));
+  }
+  memory.begin(std::move(at_rest));
 }
 
 template <class E>
@@ -262,7 +298,14 @@ std::size_t FiniteElements::KernelOf<E>::sweep_piece(const Piece& piece, std::sp
     }
   }
   const ElementLaw& law = laws[piece.material];
-  const std::size_t unanswered = law.local.stress(law.kinematics, count, f.data(), p.data(), energy.data());
+  std::size_t unanswered = 0;
+  if (law.viscous) {
+    for (std::size_t n = piece.begin, at = 0; n < piece.end; ++n, at += kPoints)
+      respond(law, order_[n], at, f, p, energy.data());
+    for (std::size_t at = 0; at < count; ++at) unanswered += std::isfinite(energy[at]) ? 0 : 1;
+  } else {
+    unanswered = law.local.stress(law.kinematics, count, f.data(), p.data(), energy.data());
+  }
   for (std::size_t n = piece.begin, at = 0; n < piece.end; ++n, at += kPoints) {
     const std::size_t e = order_[n];
     element_energy_[e] = 0;
@@ -280,6 +323,26 @@ std::size_t FiniteElements::KernelOf<E>::sweep_piece(const Piece& piece, std::sp
             force(a, d);
   }
   return unanswered;
+}
+
+/// Stresses and energies of an element that relaxes, whose gradients begin at `at`; keeps what its points
+/// will remember.
+template <class E>
+void FiniteElements::KernelOf<E>::respond(const ElementLaw& law, std::size_t e, std::size_t at,
+                                          const std::array<double*, kComponents>& f,
+                                          const std::array<double*, kComponents>& p, double* energy) {
+  for (std::size_t q = 0; q < kPoints; ++q) {
+    Tensor here;
+    for (int c = 0; c < D * D; ++c) here(c / D, c % D) = f[static_cast<std::size_t>(c)][at + q];
+    const std::size_t memory_at = memory_of(e, q);
+    const ElementLaw::Step step = step_of(e, q);
+    const Eigen::Matrix3d whole = law.template in_space<D>(here, step);
+    const Tensor stress = law.template viscous_stress<D>(here, whole, step);
+    for (int c = 0; c < D * D; ++c) p[static_cast<std::size_t>(c)][at + q] = stress(c / D, c % D);
+    energy[at + q] =
+        law.viscous->remember(memory.start() + memory_at, memory.elapsed(), whole, memory.last() + memory_at);
+    if (!stress.allFinite()) energy[at + q] = std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
 /// Adds U'(mean of J) J F^-T to the stresses of an element, whose gradients begin at `at`, and V U to its
@@ -328,7 +391,7 @@ typename FiniteElements::KernelOf<E>::Stiffness FiniteElements::KernelOf<E>::sti
       for (int i = 0; i < D; ++i)
         for (int j = 0; j < D; ++j) b(D * i + j, D * a + i) = slope(a, j);
     const Tensor f = gradient(moved, e, q);
-    typename ResponseIn<D>::Tangent tangent = law.template respond<D>(f).tangent;
+    typename ResponseIn<D>::Tangent tangent = law.template respond<D>(f, step_of(e, q)).tangent;
     if (law.mean) {
       const Tensor g = f.inverse().transpose();
       const auto flat_g = flat<D>(g);
@@ -360,19 +423,20 @@ struct PointState {
 };
 
 template <int D>
-PointState point_state(const ElementLaw& law, const Eigen::Matrix<double, D, D>& f, double mean_j) {
+PointState point_state(const ElementLaw& law, const Eigen::Matrix<double, D, D>& f, double mean_j,
+                       const double* past, double elapsed) {
+  const ElementLaw::Step step = law.step(past, elapsed);
   PointState state;
-  state.f.template topLeftCorner<D, D>() = f;
+  state.f = law.in_space<D>(f, step);
   if (law.kinematics == Kinematics::plane_stress) {
-    const ResponseIn<D> response = law.respond<D>(f);
-    if constexpr (D == 2) state.f(2, 2) = law.local.thickness_stretch(f);
+    const ResponseIn<D> response = law.respond<D>(f, step);
     state.stress.template topLeftCorner<D, D>() = response.stress;
-    state.energy = response.energy;
+    state.energy = law.energy(response.energy, state.f, past, elapsed);
     return state;
   }
-  const Response response = law.local.solid(state.f);
+  const Response response = law.viscous ? law.viscous->solid(state.f, step) : law.local.solid(state.f);
   state.stress = response.stress;
-  state.energy = response.energy;
+  state.energy = law.energy(response.energy, state.f, past, elapsed);
   if (!law.mean) return state;
   double first = 0, second = 0;
   state.energy += volume_energy(*law.mean, mean_j, first, second);
@@ -395,7 +459,9 @@ std::vector<ModelField> FiniteElements::KernelOf<E>::fields(std::span<const doub
     const Nodal moved = nodal(u, e);
     const double j = mean_dilatation(moved, e);
     for (std::size_t q = 0; q < kPoints; ++q) {
-      const PointState state = point_state<D>(law_of(e), gradient(moved, e, q), j);
+      const ElementLaw& law = law_of(e);
+      const PointState state =
+          point_state<D>(law, gradient(moved, e, q), j, memory.start() + memory_of(e, q), memory.elapsed());
       const double mises = state.mises();
       const auto value = E::at(rule[q].at).value;
       for (int a = 0; a < N; ++a) {
@@ -489,6 +555,31 @@ std::vector<Point> FiniteElements::displacements(std::span<const double> u) cons
 
 std::vector<ModelField> FiniteElements::fields(std::span<const double> u) {
   return kernel_->fields(u);
+}
+
+bool FiniteElements::has_memory() const {
+  return !kernel_->memory.empty();
+}
+
+void FiniteElements::go_on(double dt) {
+  kernel_->memory.go_on(dt);
+}
+
+void FiniteElements::go_back() {
+  kernel_->memory.go_back();
+}
+
+Passage FiniteElements::advance(std::span<const double> /*u*/, std::span<double> /*force*/) {
+  kernel_->memory.pass();
+  return {};
+}
+
+void FiniteElements::save(Snapshot& to) const {
+  if (has_memory()) kernel_->memory.save(to);
+}
+
+void FiniteElements::restore(const Snapshot& from) {
+  if (has_memory()) kernel_->memory.restore(from);
 }
 
 std::vector<std::string> FiniteElements::describe() const {

@@ -25,7 +25,8 @@ struct FiniteElementsSettings {
 /// Finite elements with displacements as unknowns, at any deformation: force and tangent of eq. (14) to (16)
 /// of the space-time theory, by Gauss's rule. A state holds u_x of all nodes, then u_y (and u_z). Elements
 /// write their forces apart; a node sums those of its elements in their order, so that bits do not depend on
-/// threads.
+/// threads. Materials that relax remember their past at quadrature points; energies then are the work taken
+/// up, stored or not.
 class FiniteElements final : public Model {
  public:
   /// Throws InputError for elements that are turned over, a mean dilatation that no material has, and
@@ -39,6 +40,12 @@ class FiniteElements final : public Model {
                                                         std::span<double> force) override;
   [[nodiscard]] double strain_energy(std::span<const double> u) override;
   [[nodiscard]] bool conservative() const override { return true; }
+  [[nodiscard]] bool has_memory() const override;
+  void go_on(double dt) override;
+  void go_back() override;
+  [[nodiscard]] Passage advance(std::span<const double> u, std::span<double> force) override;
+  void save(Snapshot& to) const override;
+  void restore(const Snapshot& from) override;
   void mass(std::span<double> mass) const override;
   void stiffness_bound(std::span<const double> u, std::span<double> bound) override;
   /// A part is an element.

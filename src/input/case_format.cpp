@@ -26,6 +26,7 @@ namespace {
 
 using kind::AnyUnit;
 using kind::Components;
+using kind::Flag;
 using kind::Integer;
 using kind::Interval;
 using kind::Part;
@@ -246,8 +247,10 @@ Format describe(SolverInput& s) {
                .otherwise("0"),
            Key{"start", Text{&s.start, {"initial", "equilibrium"}},
                "The undeformed state or what [[initial]] says, or the equilibrium under the loads of time 0, "
-               "by dynamic relaxation, with velocity 0."}
-               .applies(by_verlet)
+               "with velocity 0: "
+               "by dynamic relaxation before explicit steps, else by Newton's method. Without inertia it is "
+               "always the equilibrium."}
+               .applies(in_time)
                .otherwise("\"initial\""),
            Key{"start_tolerance", Quantity{&s.start_tolerance, dimension::none, fraction},
                "L2 norm of the free forces over those of constraints and loads, at which that equilibrium is "
@@ -270,6 +273,11 @@ Format describe(SolverInput& s) {
                "the step is halved; it grows where there is much less."}
                .applies(in_slabs)
                .otherwise("1e-4"),
+           Key{"inertia", Flag{&s.inertia},
+               "false leaves masses out: the body is in equilibrium at any time, only what its material "
+               "remembers moves on."}
+               .applies(in_slabs)
+               .otherwise("true"),
            Key{"spectral_radius", Quantity{&s.spectral_radius, dimension::none, {.low = 0, .high = 1}},
                "Amplification of motions far faster than the step, 0 to 1; 1 is Newmark's average "
                "acceleration."}
@@ -277,6 +285,13 @@ Format describe(SolverInput& s) {
                .otherwise("0.8")},
       .finish = [&s](const Check& check) {
         check_stretch(s.stretch, check);
+        if (!s.inertia) {
+          if (check.given("start") && s.start == "initial")
+            check.fail("start",
+                       "without inertia the body starts in equilibrium; expected none, or inertia = true");
+          s.start = "equilibrium";
+          if (!check.given("start_tolerance")) s.start_tolerance = s.tolerance.value_or(1e-8);
+        }
         if (s.gauss_points > 6) check.fail("gauss_points", "expected 2 to 6");
         if (!s.tolerance && !s.is_explicit()) s.tolerance = s.in_time() ? 1e-8 : 1e-5;
         if (s.stretch.empty()) {

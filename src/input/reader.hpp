@@ -26,6 +26,7 @@ class Reader {
   // One for each kind of value.
   void read_value(const kind::Text& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Texts& to, const toml::node& node, const Origin& origin);
+  void read_value(const kind::Flag& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Integer& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Integers& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Quantity& to, const toml::node& node, const Origin& origin);

@@ -108,6 +108,12 @@ void Reader::read_value(const kind::Texts& to, const toml::node& node, const Ori
   }
 }
 
+void Reader::read_value(const kind::Flag& to, const toml::node& node, const Origin& origin) {
+  const auto* flag = node.as_boolean();
+  if (flag == nullptr) origin.fail(found(node) + "; expected true or false");
+  *to.to = flag->get();
+}
+
 void Reader::read_value(const kind::Integer& to, const toml::node& node, const Origin& origin) {
   *to.to = integer_of(node, to.low, origin);
 }

@@ -36,6 +36,7 @@ struct ValueText {
   std::string operator()(const kind::Texts& k) const {
     return k.among.empty() ? "list of texts" : fmt::format("list of {}", code_list(k.among));
   }
+  std::string operator()(const kind::Flag&) const { return "true or false"; }
   std::string operator()(const kind::Integer& k) const {
     return fmt::format("whole number, at least {}", k.low);
   }

@@ -46,6 +46,7 @@ struct ValueSchema {
     schema["uniqueItems"] = true;
     return schema;
   }
+  Json operator()(const kind::Flag&) const { return {{"type", "boolean"}}; }
   Json operator()(const kind::Integer& k) const { return {{"type", "integer"}, {"minimum", k.low}}; }
   Json operator()(const kind::Integers& k) const {
     return list_schema({{"type", "integer"}, {"minimum", k.low}}, 1, 3);

@@ -74,6 +74,10 @@ void add_frozen(const Matrix3& x, const Matrix2& f, PlaneResponse& to) {
 
 }  // namespace
 
+bool has_isochoric_part(const Material& material) {
+  return std::visit([](const auto& law) { return !OfGradient<std::decay_t<decltype(law)>>; }, material.law);
+}
+
 Viscoelastic::Viscoelastic(Material material) : material_(std::move(material)), isochoric_(material_) {
   isochoric_.volumetric = Volumetric{};
 }
@@ -165,18 +169,31 @@ double Viscoelastic::thickness_stretch(const Matrix2& f, const Step& step) const
   return kNotANumber;
 }
 
-double Viscoelastic::remember(const double* before, double dt, const Matrix3& f, double* after) const {
-  std::array<double, 9> gradient{}, stress{};
+double Viscoelastic::isochoric(const Matrix3& f, Matrix3& stress) const {
   std::array<const double*, 9> from{};
   std::array<double*, 9> to{};
-  for (std::size_t c = 0; c < 9; ++c) {
-    gradient[c] = f(static_cast<int>(c) / 3, static_cast<int>(c) % 3);
-    from[c] = &gradient[c];
-    to[c] = &stress[c];
+  for (int c = 0; c < 9; ++c) {
+    from[static_cast<std::size_t>(c)] = &f(c / 3, c % 3);
+    to[static_cast<std::size_t>(c)] = &stress(c / 3, c % 3);
   }
   double energy = 0;
   isochoric_.stress(Kinematics::solid, 1, from.data(), to.data(), &energy);
-  const Matrix3 p = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(stress.data());
+  return energy;
+}
+
+Matrix3 Viscoelastic::stress(const Matrix3& f, const Step& step) const {
+  Matrix3 p;
+  isochoric(f, p);
+  const double j = f.determinant(), a = std::pow(j, -2.0 / 3);
+  double first = 0, second = 0;
+  volume_energy(*material_.volumetric, j, first, second);
+  const Matrix3 g = f.inverse().transpose(), fx = f * step.frozen;
+  return step.scale * p + first * j * g + a * (fx - (fx.array() * f.array()).sum() / 3 * g);
+}
+
+double Viscoelastic::remember(const double* before, double dt, const Matrix3& f, double* after) const {
+  Matrix3 p;
+  const double energy = isochoric(f, p);
   const double j = f.determinant(), a = std::pow(j, -2.0 / 3);
   const Matrix3 d = f.inverse() * p / a, c = a * f.transpose() * f;
   const Matrix3 d_before = symmetric(before), change = c - symmetric(before + kTensor);

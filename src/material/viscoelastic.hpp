@@ -6,6 +6,9 @@
 
 namespace riven {
 
+/// Whether a material's law leaves its volume to an energy of its own, so that it can relax in shape alone.
+[[nodiscard]] bool has_isochoric_part(const Material& material);
+
 /// A material with a Prony series at finite strain (Simo 1987; rubber materials theory, eq. (12) to (14)).
 /// Of the isochoric stress D = DEV[2 dW/dCbar] each branch carries a share of an H that follows it and
 /// relaxes, dH/dt + H/tau = dD/dt; the volume is elastic.
@@ -35,6 +38,8 @@ class Viscoelastic {
   [[nodiscard]] Response solid(const Eigen::Matrix3d& f, const Step& step) const;
   [[nodiscard]] PlaneResponse plane_strain(const Eigen::Matrix2d& f, const Step& step) const;
   [[nodiscard]] PlaneResponse plane_stress(const Eigen::Matrix2d& f, const Step& step) const;
+  /// Stress of a solid alone.
+  [[nodiscard]] Eigen::Matrix3d stress(const Eigen::Matrix3d& f, const Step& step) const;
   [[nodiscard]] double thickness_stretch(const Eigen::Matrix2d& f, const Step& step) const;
 
   /// What is remembered at the end of a step in `f`, into `after`. Returns the work (J/m^3) that the point
@@ -42,6 +47,9 @@ class Viscoelastic {
   double remember(const double* before, double dt, const Eigen::Matrix3d& f, double* after) const;
 
  private:
+  /// W of the shape, and its stress.
+  double isochoric(const Eigen::Matrix3d& f, Eigen::Matrix3d& stress) const;
+
   static constexpr std::size_t kTensor = 6, kOwn = 2 * kTensor + 1;
 
   Material material_;   // its instantaneous response

@@ -125,13 +125,15 @@ void check_solver(const Simulation& simulation) {
 
 /// Elements that nothing holds move at once, or nowhere: statics has no answer.
 void check_supports(const Simulation& simulation) {
-  if (simulation.mesh == nullptr || simulation.parameter == Parameter::time) return;
+  if (simulation.mesh == nullptr) return;
+  const SolverInput& solver = simulation.input.solver;
+  if (solver.in_time() && solver.inertia) return;
   if (const auto motion = free_motion(simulation))
     throw InputError(
         simulation.input.solver.at,
         fmt::format("solver.method: the loads leave the body free to move as a whole, by {}; expected "
-                    "displacements that hold it, or method = \"verlet\"",
-                    *motion));
+                    "displacements that hold it, or {}",
+                    *motion, solver.in_time() ? "inertia = true" : "method = \"verlet\""));
 }
 
 /// Every field asked for must be one that the model has.

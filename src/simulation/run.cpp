@@ -38,6 +38,8 @@ void fill(const Simulation& simulation, TimeStepSettings& settings) {
   settings.step = in.step;
   settings.tolerance = in.tolerance.value();
   settings.step_tolerance = in.step_tolerance;
+  settings.inertia = in.inertia;
+  if (in.start == "equilibrium") settings.rest_tolerance = in.start_tolerance;
   settings.initial_u = simulation.initial_u;
   settings.initial_v = simulation.initial_v;
   settings.external = simulation.external;

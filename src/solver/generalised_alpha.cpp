@@ -54,6 +54,10 @@ class GeneralisedAlpha final : public TimeStepMethod {
   }
 
   std::optional<std::string> step(const State& from, double end) override;
+  void lead_model_to(double s) override {
+    model_.go_back();
+    model_.go_on(s * h_);
+  }
   void displacement(double s, std::span<double> u) const override;
   void velocity(double s, std::span<double> v) const override;
   [[nodiscard]] double work(double s) const override { return s * step_work_; }
@@ -148,6 +152,7 @@ std::optional<Breakdown> GeneralisedAlpha::evaluate() {
     if (mass_[i] == 0) end_acceleration_[i] = 0;
   }
   std::fill(force_.begin(), force_.end(), 0.0);  // models leave out points without bonds
+  lead_model_to(1);
   if (auto breakdown = model_.internal_force(state_, force_)) return breakdown;
   std::fill(applied_.begin(), applied_.end(), 0.0);
   if (!external_.empty()) {
@@ -200,6 +205,7 @@ bool GeneralisedAlpha::factor() {
   std::vector<double> force(u_.size());
   for (std::size_t i = 0; i < u_.size(); ++i) state_[i] = u_[i] + z_[i];
   ++evaluations_;
+  lead_model_to(1);
   static_cast<void>(model_.internal_force(state_, force));  // as before: it was evaluated
   if (!system_) system_.emplace(model_, constraints_, state_, mass_);
   system_->assemble(state_, external_, end_);

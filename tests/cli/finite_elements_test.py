@@ -3,6 +3,7 @@
 import json
 import unittest
 import xml.etree.ElementTree as ElementTree
+from math import exp
 
 from program import BOX, PLAIN, ProgramTest, history, replaced
 
@@ -54,6 +55,13 @@ kind = "displacement"
 component = "y"
 at = ["40 mm", "20 mm", "30 mm"]
 """
+
+
+RELAXING = replaced(SHEET, 'youngs_modulus = "6 MPa"\n',
+                    'youngs_modulus = "6 MPa"\nrelaxation = [{ share = 0.3, time = "0.5 s" }, { share = 0.2, time = "2 s" }]\n')
+RELAXING = replaced(RELAXING, '["(stretch - 1)*x", "(stretch - 1)*y"]', '["0.4*x", "0.4*y"]')
+RELAXING = replaced(RELAXING, 'method = "newton"\ntolerance = 1e-9\nstretch = [1.2, 1.4]',
+                    'method = "space-time"\ninertia = false\nuntil = "1 s"\nstep = "0.25 s"')
 
 
 def uniaxial(stretch):
@@ -156,6 +164,36 @@ class FiniteElements(ProgramTest):
                        '[[load]]\non = "bottom"\ndisplacement = ["free", 0]')
         expected = 2e6 * (1.4 - 1.4**-2) * 0.2 * 0.01 * (1 + 9 * 2 / 3)
         self.assertAlmostEqual(self.last(two, "two")[1] / expected, 1, delta=1e-8)
+
+    def test_a_rubber_relaxes_and_is_checked_back(self):
+        said = self.command("check", self.write("case.toml", RELAXING)).stdout
+        self.assertIn("[[material.rubber.relaxation]]\nshare = 0.3\n", said)
+        again = self.command("check", self.write("again.toml", said)).stdout
+        self.assertEqual([line for line in said.splitlines() if "time:" not in line],
+                         [line for line in again.splitlines() if "time:" not in line])
+        for row in (self.last(said, "written"), self.last(RELAXING, "relaxing")):
+            # An incompressible sheet, stretched at time 0: 2 C10 (l - 1/l^5) at once, the shares fall.
+            elastic = 2e6 * (1.4 - 1.4**-5) * 0.2 * 0.01
+            self.assertAlmostEqual(row[1] / elastic, 0.5 + 0.3 * exp(-1 / 0.5) + 0.2 * exp(-1 / 2), delta=1e-7)
+        self.assertEqual(history(self.top / "relaxing")[1][0][0], 0)
+
+    def test_relaxation_and_rest_are_refused_where_they_make_no_sense(self):
+        for old, new, message in [
+                ("share = 0.2", "share = 0.7", "material.rubber.relaxation: the shares sum to 1;"),
+                ("share = 0.2", "share = 1.7", "found 1.7; expected a value"),
+                ('"2 s"', '"0 s"', "found 0 s; expected a value above 0"),
+                ("inertia = false", 'inertia = "no"', 'found "no"; expected true or false'),
+                ("inertia = false", 'inertia = false\nstart = "initial"', "without inertia the body starts in equilibrium"),
+                ('["0.4*x", "0.4*y"]', '["free", "0.4*y"]', "free to move as a whole, by a translation along x; "
+                 "expected displacements that hold it, or inertia = true")]:
+            path = self.write("case.toml", replaced(RELAXING, old, new))
+            self.assertIn(message, self.refused("check", path))
+        light = replaced(RELAXING, 'density = "1100 kg/m^3"\n', "")
+        self.command("check", self.write("light.toml", light))
+        said = self.refused("check", self.write("moving.toml", replaced(light, "inertia = false\n", "")))
+        self.assertIn("material.rubber.density: missing with solver.method", said)
+        points = replaced(PLAIN, 'youngs_modulus = "6 MPa"\n', 'youngs_modulus = "6 MPa"\nrelaxation = [{ share = 0.5, time = "1 s" }]\n')
+        self.assertIn('the model "membrane" has no memory', self.refused("check", self.write("points.toml", points)))
 
     def test_free_motions_are_named(self):
         free = replaced(SHEET, 'on = ["left", "right", "bottom", "top"]', "on = {}")
