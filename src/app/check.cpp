@@ -175,7 +175,7 @@ void print_model(const Simulation& simulation) {
 void print_cost(const Simulation& simulation) {
   if (simulation.parameter == Parameter::time) {
     const std::vector<double> rest(simulation.model->dofs(), 0.0);
-    fmt::print("# stable step: {:.4g} s at rest\n",
+    fmt::print("# stable step of explicit methods: {:.4g} s at rest\n",
                stable_step(*simulation.model, *simulation.constraints, rest));
   }
   const TimeEstimate time = time_estimate(simulation);
