@@ -10,6 +10,7 @@ import argparse
 import bisect
 import collections
 import csv
+import functools
 import math
 import os
 import pathlib
@@ -28,6 +29,7 @@ BAR = {"size": (0.02, 0.1), "thickness": 1e-3, "law": {"c10": 1e6, "c01": 0.5e6,
 # A thin layer is in plane stress; forces and stiffness are those of its thickness.
 BEAM = {"size": (10.0, 0.625), "thickness": 0.01, "law": {"c10": 100e6, "c01": 50e6, "d1": 2 / 1e10}, "traction": -0.128e6}
 ERRORS = (0.03, 0.01, 0.003, 0.001)
+LONG = 60  # s: programs that take longer run fewer times than asked
 DENSE = [0.005 * k for k in range(1, 201)]  # s: where curves are compared
 
 
@@ -241,8 +243,8 @@ def seconds_at(rows, wanted):
     return None
 
 
-# run(step): dense values and CPU seconds; converged(): dense values with steps far shorter.
-Series = collections.namedtuple("Series", "name mesh run steps converged")
+# run(step): dense values and CPU seconds; `fine`: another run of this kind, and a step of it.
+Series = collections.namedtuple("Series", "name mesh run steps fine")
 
 
 def beam_series(options):
@@ -251,13 +253,14 @@ def beam_series(options):
             curve, seconds = beam_ccx(options, nx, ny, step)
             return dense(curve), seconds
 
-        return Series("CalculiX C3D20R", (nx, ny), run, [0.02, 0.01, 0.005, 0.0025], lambda: run(0.000625)[0])
+        return Series("CalculiX C3D20R", (nx, ny), run, [0.02, 0.01, 0.005, 0.0025], (run, 0.0025))
 
     def riven(element, nx, ny, method, steps):
         def run(step, by=method):
             return beam_riven(options, element, nx, ny, by, step)
 
-        return Series(f"Riven {element} {method}", (nx, ny), run, steps, lambda: run(0.0003125, "generalised-alpha")[0])
+        fine = functools.partial(run, by="generalised-alpha")
+        return Series(f"Riven {element} {method}", (nx, ny), run, steps, (fine, 0.000625))
 
     series = [calculix(nx, ny) for nx, ny in ((64, 4), (32, 2))]
     for element, nx, ny in (("q4", 64, 4), ("q8", 32, 2), ("q8", 64, 4)) if options.riven else ():
@@ -266,36 +269,40 @@ def beam_series(options):
     return series
 
 
-def peak(values):
-    return max(abs(u) for u in values)
+def converged(run, step):
+    """The curve without steps: the error of both methods goes with the square of the step."""
+    fine, coarse = run(step)[0], run(2 * step)[0]
+    return [(4 * a - b) / 3 for a, b in zip(fine, coarse, strict=True)]
+
+
+def timed(options, one, step):
+    """Dense values and the median of the CPU seconds of several runs, fewer where one takes long."""
+    runs = [one.run(step)]
+    while len(runs) < options.rounds and sum(seconds for _, seconds in runs) < LONG:
+        runs.append(one.run(step))
+    return runs[0][0], statistics.median(seconds for _, seconds in runs)
 
 
 def transverse_beam(options):
-    series = beam_series(options)
-    kinds = [one.name.rsplit(" ", 1)[0] if "Riven" in one.name else one.name for one in series]
-    converged = {}
-    print("converged in time, error of the mesh beside the first:")
-    for one, kind in zip(series, kinds):
-        if (kind, one.mesh) not in converged:
-            values = converged[kind, one.mesh] = one.converged()
-            mesh_error = error(values, next(iter(converged.values())))
-            print(f"{kind:16} {one.mesh[0]:3} x {one.mesh[1]}: peak {peak(values):.5f} m, {100 * mesh_error:.2f} %", flush=True)
-    if not options.quick:
-        fine, fewer = (dense(beam_ccx(options, nx, ny, 0.0025)[0]) for nx, ny in ((128, 8), (64, 4)))
-        print(f"CalculiX C3D20R, steps of 2.5 ms, 64 x 4 beside 128 x 8: {100 * error(fewer, fine):.3f} %")
-    print(f"error in time, median of the CPU seconds of {options.rounds} rounds:")
-    found = {}
-    for one, kind in zip(series, kinds):
+    limits, found = {}, {}
+    print("program, method              mesh       step  error in time     CPU")
+    for one in beam_series(options):
+        place = f"{one.name:27} {one.mesh[0]:3} x {one.mesh[1]}"
+        kind = " ".join(one.name.split()[:2]), one.mesh
+        if kind not in limits:
+            limits[kind] = converged(*one.fine)
         for step in one.steps:
-            runs = [one.run(step) for _ in range(options.rounds)]
-            row = error(runs[0][0], converged[kind, one.mesh]), statistics.median(seconds for _, seconds in runs)
-            found.setdefault((one.name, one.mesh), []).append(row)
-            print(f"{one.name:27} {one.mesh[0]:3} x {one.mesh[1]}  {1e3 * step:6.2f} ms  {100 * row[0]:7.3f} %  {row[1]:8.2f} s", flush=True)
-    print("CPU seconds at an error in time of")
-    print(" " * 36 + "".join(f"{100 * wanted:8.1f} %" for wanted in ERRORS))
-    for (name, mesh), rows in found.items():
+            values, seconds = timed(options, one, step)
+            found.setdefault(place, []).append((error(values, limits[kind]), seconds))
+            print(f"{place} {1e3 * step:7.2f} ms  {100 * found[place][-1][0]:9.3f} %  {seconds:8.2f} s", flush=True)
+    print("CPU seconds at an error in time of".ljust(36) + "".join(f"{100 * wanted:8.1f} %" for wanted in ERRORS))
+    for place, rows in found.items():
         seconds = [seconds_at(rows, wanted) for wanted in ERRORS]
-        print(f"{name:27} {mesh[0]:3} x {mesh[1]} " + "".join(f"{'-' if s is None else f'{s:.2f}':>10}" for s in seconds))
+        print(f"{place:36}" + "".join(f"{'-' if s is None else f'{s:.2f}':>10}" for s in seconds))
+    print("without error in time, beside the first:")
+    first = next(iter(limits.values()))
+    for (name, (nx, ny)), values in limits.items():
+        print(f"{name:16} {nx:3} x {ny}: peak {max(map(abs, values)):.5f} m, error of the mesh {100 * error(values, first):.2f} %")
 
 
 def main():
@@ -304,7 +311,6 @@ def main():
     parser.add_argument("--riven", type=pathlib.Path, help="Riven's program; CalculiX runs alone without it")
     parser.add_argument("--ccx", default="ccx", help="CalculiX's program")
     parser.add_argument("--rounds", type=int, default=3, help="runs of which the median counts")
-    parser.add_argument("--quick", action="store_true", help="without the finest mesh")
     options = parser.parse_args()
     options.ccx = shutil.which(options.ccx) or sys.exit(f"compare.py: {options.ccx} is not here; Debian: calculix-ccx")
     options.riven = options.riven and options.riven.resolve()
