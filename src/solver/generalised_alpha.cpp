@@ -86,7 +86,10 @@ class GeneralisedAlpha final : public TimeStepMethod {
   std::optional<Breakdown> evaluate();
   std::optional<std::string> solve();
   void constrain();
-  [[nodiscard]] bool is_frozen() const { return system_ && std::abs(frozen_step_ - h_) <= kRounding * h_; }
+  /// A model's memory is not saved with the factors: with one they are of their own step.
+  [[nodiscard]] bool is_frozen() const {
+    return system_ && !model_.has_memory() && std::abs(frozen_step_ - h_) <= kRounding * h_;
+  }
   [[nodiscard]] bool freeze();
   [[nodiscard]] bool factor();
   [[nodiscard]] bool search(const std::vector<double>& direction);
