@@ -249,6 +249,7 @@ Series = collections.namedtuple("Series", "name mesh run steps fine")
 
 def beam_series(options):
     def calculix(nx, ny):
+        @functools.cache
         def run(step):
             curve, seconds = beam_ccx(options, nx, ny, step)
             return dense(curve), seconds
@@ -256,6 +257,7 @@ def beam_series(options):
         return Series("CalculiX C3D20R", (nx, ny), run, [0.02, 0.01, 0.005, 0.0025], (run, 0.0025))
 
     def riven(element, nx, ny, method, steps):
+        @functools.cache
         def run(step, by=method):
             return beam_riven(options, element, nx, ny, by, step)
 
@@ -279,7 +281,7 @@ def timed(options, one, step):
     """Dense values and the median of the CPU seconds of several runs, fewer where one takes long."""
     runs = [one.run(step)]
     while len(runs) < options.rounds and sum(seconds for _, seconds in runs) < LONG:
-        runs.append(one.run(step))
+        runs.append(one.run.__wrapped__(step))
     return runs[0][0], statistics.median(seconds for _, seconds in runs)
 
 
@@ -287,6 +289,8 @@ def transverse_beam(options):
     limits, found = {}, {}
     print("program, method              mesh       step  error in time     CPU")
     for one in beam_series(options):
+        if not one.name.startswith(options.only):
+            continue
         place = f"{one.name:27} {one.mesh[0]:3} x {one.mesh[1]}"
         kind = " ".join(one.name.split()[:2]), one.mesh
         if kind not in limits:
@@ -302,7 +306,7 @@ def transverse_beam(options):
     print("without error in time, beside the first:")
     first = next(iter(limits.values()))
     for (name, (nx, ny)), values in limits.items():
-        print(f"{name:16} {nx:3} x {ny}: peak {max(map(abs, values)):.5f} m, error of the mesh {100 * error(values, first):.2f} %")
+        print(f"{name:16} {nx:3} x {ny}: {min(values):.5f} to {max(values):.5f} m, error of the mesh {100 * error(values, first):.2f} %")
 
 
 def main():
@@ -311,6 +315,7 @@ def main():
     parser.add_argument("--riven", type=pathlib.Path, help="Riven's program; CalculiX runs alone without it")
     parser.add_argument("--ccx", default="ccx", help="CalculiX's program")
     parser.add_argument("--rounds", type=int, default=3, help="runs of which the median counts")
+    parser.add_argument("--only", default="", help="programs, elements and methods of the beam whose name begins so: \"Riven q8\"")
     options = parser.parse_args()
     options.ccx = shutil.which(options.ccx) or sys.exit(f"compare.py: {options.ccx} is not here; Debian: calculix-ccx")
     options.riven = options.riven and options.riven.resolve()
