@@ -93,7 +93,7 @@ void ArcLength::begin_step() {
 void ArcLength::begin_iterations() {
   forces_.rescale(state_);
   iteration_ = 0;
-  correction_ = std::numeric_limits<double>::infinity();
+  corrections_.begin();
   stepping_ = true;
 }
 
@@ -104,15 +104,15 @@ void ArcLength::iterate() {
   const double tolerance = settings_.loads.tolerance;
   const bool rests = norm(forces_.values()) <= tolerance * std::max(scale_, forces_.scale());
   ++state_.iterations;
-  // What a correction leaves is of its square: this one has left less than the tolerance.
-  if (rests && correction_ * correction_ <= tolerance) return arrive();
+  if (rests && corrections_.left() <= tolerance) return arrive();
   if (++iteration_ > kMostIterations)
     return retreat(
         fmt::format("not converged in {} iterations: {}", kMostIterations, forces_.unrest(tolerance)));
   if (const auto failure = correct()) retreat(*failure);
 }
 
-/// One iteration of Newton's method on the bordered system, K du - q dp = r, direction . (du, dp) = -gap.
+/// One iteration of Newton's method on the bordered system, K du - q dp = r, direction . (du, dp) = 0:
+/// the first guess lies on the plane already.
 std::optional<std::string> ArcLength::correct() {
   if (!tangent_.factor(state_.u, forces_.row_bounds())) return "the tangent is singular";
   Direction step{std::vector<double>(state_.u.size())};
@@ -120,19 +120,18 @@ std::optional<std::string> ArcLength::correct() {
   if (!held_) {
     Direction response{std::vector<double>(state_.u.size()), 1};
     if (auto failure = tangent_.follow(state_, forces_, response.u)) return failure;
-    const double gap = product(direction_, travelled()) - length_;
-    step.parameter = -(gap + product(direction_, step)) / product(direction_, response);
+    step.parameter = -product(direction_, step) / product(direction_, response);
     for (std::size_t i = 0; i < step.u.size(); ++i) step.u[i] += step.parameter * response.u[i];
   }
   if (!under_way()) {
     move(step.u, 0);
-    correction_ = norm(step.u) / (norm(state_.u) + std::numeric_limits<double>::min());
+    corrections_.add(norm(step.u) / (norm(state_.u) + std::numeric_limits<double>::min()));
     return std::nullopt;
   }
   const double size = std::sqrt(product(step, step));
   if (!(size <= kLongestCorrection * length_)) return "Newton's method leads away from the path";
   move(step.u, step.parameter);
-  correction_ = size / longest_;
+  corrections_.add(size / longest_);
   return std::nullopt;
 }
 

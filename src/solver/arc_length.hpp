@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "solver/corrections.hpp"
 #include "solver/load_steps.hpp"
 #include "solver/path_tangent.hpp"
 
@@ -60,7 +61,7 @@ class ArcLength {
     each("arc.held", self.held_);
     each("arc.next", self.next_);
     each("arc.iteration", self.iteration_);
-    each("arc.correction", self.correction_);
+    Corrections::each_member(self.corrections_, "arc.corrections", each);
     each("arc.length", self.length_);
     each("arc.longest", self.longest_);
     each("arc.scale", self.scale_);
@@ -106,14 +107,14 @@ class ArcLength {
   std::vector<double> start_;                         // displacements there
   Direction direction_;                               // there
   int negative_ = 0;                                  // eigenvalues of the tangent there
-  double metric_ = 0;       // (1/m)^2: what displacements count against the parameter; 0: not known yet
-  double path_ = 0;         // length so far
-  std::size_t target_ = 0;  // number of the target that is aimed at
-  bool stepping_ = false;   // in the middle of a step
-  bool held_ = true;        // this step is to a given parameter instead of a given length
-  double next_ = 0;         // parameter that goes with the displacements of the state
-  long iteration_ = 0;      // of this step
-  double correction_ = 0;   // the last one, over the longest step
+  double metric_ = 0;        // (1/m)^2: what displacements count against the parameter; 0: not known yet
+  double path_ = 0;          // length so far
+  std::size_t target_ = 0;   // number of the target that is aimed at
+  bool stepping_ = false;    // in the middle of a step
+  bool held_ = true;         // this step is to a given parameter instead of a given length
+  double next_ = 0;          // parameter that goes with the displacements of the state
+  long iteration_ = 0;       // of this step
+  Corrections corrections_;  // over the longest step
   double length_ = 0, longest_ = 0;  // of steps
   double scale_ = 0;                 // largest of the residual's so far (N)
 };
