@@ -217,9 +217,22 @@ Format describe(SolverInput& s) {
                "Output states, moving away from 1."}
                .applies(in_statics)
                .required(),
-           Key{"increment", Quantity{&s.increment, dimension::none, positive}, "Largest step of the stretch."}
+           Key{"increment", Quantity{&s.increment, dimension::none, positive},
+               "Largest step of the stretch; with arc-length control its first one, and later ones are as "
+               "long "
+               "on the path, or shorter."}
                .applies(in_statics)
                .otherwise("0.1"),
+           Key{"control", Text{&s.control, {"load", "arc-length"}},
+               "What steps are of: the stretch, or the length of the path of equilibria, which then is "
+               "followed through points where the stretch has a maximum or a minimum, and where it is "
+               "unstable."}
+               .applies(When{"method", &s.method, {newton}})
+               .otherwise("\"load\""),
+           Key{"max_steps", Integer{&s.max_steps, 1},
+               "After which the path ends, though it may not have reached the last stretch."}
+               .applies(When{"control", &s.control, {"arc-length"}})
+               .otherwise("1000"),
            Key{"tolerance", Quantity{&s.tolerance, dimension::none, fraction},
                "Statics: L2 norm of the free forces over that of the constraint forces, at which a state has "
                "converged; 1e-5 unless given. Space-time and generalised-alpha: norms of residual and "

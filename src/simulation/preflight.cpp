@@ -115,6 +115,13 @@ void check_step(const Simulation& simulation) {
 void check_solver(const Simulation& simulation) {
   const Case& input = simulation.input;
   const SolverInput& solver = input.solver;
+  if (solver.control == "arc-length")
+    for (const MaterialInput& material : input.materials)
+      if (material.breaks())
+        throw InputError(solver.at, fmt::format("solver.control: bonds of material.{} break, and a path of "
+                                                "equilibria that can be followed to and fro has none that "
+                                                "do; expected \"load\"",
+                                                material.name));
   const bool needs_tangent = solver.method == "newton" || solver.is_implicit_motion();
   if (!needs_tangent || simulation.model->tangent_parts() > 0) return;
   throw InputError(solver.at,

@@ -18,6 +18,7 @@
 #include "simulation/preflight.hpp"
 #include "simulation/recorder.hpp"
 #include "simulation/resume.hpp"
+#include "solver/arc_length.hpp"
 #include "solver/dynamic_relaxation.hpp"
 #include "solver/generalised_alpha.hpp"
 #include "solver/newton.hpp"
@@ -81,6 +82,8 @@ State solve(const Simulation& simulation, Observer& observer, const Snapshot* fr
                                   .tolerance = in.tolerance.value(),
                                   .max_iterations = in.max_iterations,
                                   .external = simulation.external};
+  if (in.control == "arc-length")
+    return follow_path(*simulation.model, *simulation.constraints, {settings, in.max_steps}, observer, from);
   const auto solve_statics = in.method == "newton" ? newton : relax;
   return solve_statics(*simulation.model, *simulation.constraints, settings, observer, from);
 }
