@@ -436,9 +436,9 @@ std::optional<Breakdown> FiniteElements::internal_force(std::span<const double> 
   const auto wrong = kernel_->force(u, force);
   if (!wrong) return std::nullopt;
   if (const auto turned = kernel_->turned_over(u))
-    return Breakdown{mesh_.centre(*turned), fmt::format("element {} is turned inside out", *turned + 1)};
+    return Breakdown{mesh_.centre(*turned), fmt::format("element {} is turned inside out", mesh_.label(*turned))};
   return Breakdown{mesh_.centre(*wrong),
-                   fmt::format("the law says nothing of the strain of element {}", *wrong + 1)};
+                   fmt::format("the law says nothing of the strain of element {}", mesh_.label(*wrong))};
 }
 
 double FiniteElements::strain_energy(std::span<const double> u) {
@@ -467,7 +467,7 @@ void FiniteElements::tangent(std::span<const double> u, std::size_t first, std::
 std::optional<Breakdown> FiniteElements::inspect(std::span<const double> u) {
   const auto turned = kernel_->turned_over(u);
   if (!turned) return std::nullopt;
-  return Breakdown{mesh_.centre(*turned), fmt::format("element {} is turned inside out", *turned + 1)};
+  return Breakdown{mesh_.centre(*turned), fmt::format("element {} is turned inside out", mesh_.label(*turned))};
 }
 
 void FiniteElements::move(std::span<double> u, const std::array<std::array<double, 3>, 3>& gradient,
