@@ -9,7 +9,7 @@
 namespace riven {
 
 /// A material as elements use it: all of its response at every quadrature point, or without U(J), which then
-/// is a function of the element's mean J.
+/// is a function of one J of the element: its mean, or that at the centre.
 struct ElementLaw {
   Material local;
   Kinematics kinematics = Kinematics::solid;
@@ -21,7 +21,7 @@ struct ElementLaw {
     mean = local.volumetric.value();
     local.volumetric->bulk_modulus = 0;
   }
-  /// Energy, stress and tangent at a quadrature point, without what the mean J gives.
+  /// Energy, stress and tangent at a quadrature point, without what the element's J gives.
   template <int D>
   [[nodiscard]] ResponseIn<D> respond(const Eigen::Matrix<double, D, D>& f) const {
     if constexpr (D == 3)

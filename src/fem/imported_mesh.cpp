@@ -131,7 +131,7 @@ class Importer {
     for (const SideOfElement& at : sides_) {
       if (with_key(at.key).size() > 1) continue;
       Side side = side_at(at);
-      for (std::size_t face = 0; face < faces.size(); ++face) {
+      for (std::size_t face = 0; face < 2 * static_cast<std::size_t>(imported_.body.dimension()); ++face) {
         const std::size_t axis = face / 2;
         const double end = box.center[axis] + (face % 2 == 0 ? -1 : 1) * box.half_size[axis];
         const bool on_face = std::all_of(side.node.begin(), side.node.end(), [&](std::uint32_t node) {

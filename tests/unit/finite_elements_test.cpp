@@ -47,7 +47,8 @@ struct Way {
 const std::vector<Way>& ways() {
   static const std::vector<Way> all{
       {"mooney_rivlin", Plane::strain, {}},       {"yeoh_cubic", Plane::strain, Dilatation::full},
-      {"ogden", Plane::strain, Dilatation::mean}, {"compressible_neo_hookean", Plane::strain, {}},
+      {"ogden", Plane::strain, Dilatation::mean}, {"mooney_rivlin", Plane::strain, Dilatation::selective},
+      {"compressible_neo_hookean", Plane::strain, {}},
       {"st_venant_kirchhoff", Plane::stress, {}}, {"mooney_rivlin", Plane::stress, {}},
       {"neo_hookean", Plane::stress, {}, true},   {"linear_elastic", Plane::strain, {}}};
   return all;
