@@ -271,8 +271,9 @@ TEST(FiniteElements, RefuseWhatHasNoMeaning) {
   const Material rubber = law_cases().front().material(), solid = law_cases().back().compressible();
   EXPECT_THROW(elements_of(mesh, rubber, Plane::strain), InputError);
   EXPECT_THROW(elements_of(mesh, solid, Plane::strain, Dilatation::mean), InputError);
-  EXPECT_THROW(elements_of(mesh, law_cases().front().compressible(), Plane::stress, Dilatation::mean),
-               InputError);
+  EXPECT_THROW(elements_of(mesh, solid, Plane::strain, Dilatation::selective), InputError);
+  for (const Dilatation dilatation : {Dilatation::mean, Dilatation::selective})
+    EXPECT_THROW(elements_of(mesh, law_cases().front().compressible(), Plane::stress, dilatation), InputError);
 }
 
 // ---- accuracy ----
