@@ -184,7 +184,7 @@ class MeshElements(ProgramTest):
         (self.top / "cook.msh").unlink()
         (self.top / "1").rename(self.top / "moved")
         self.command("run", "moved/resolved.toml", "-o", "2")
-        for file in ["history.csv", "fields/0001.vtu", "resolved.toml", "tables/geometry-mesh.msh"]:
+        for file in ["history.csv", "fields/0000.vtu", "resolved.toml", "tables/geometry-mesh.msh"]:
             self.assertEqual((self.top / "moved" / file).read_bytes(), (self.top / "2" / file).read_bytes(), file)
         cook("t3").write(self.top / "cook.msh")
         self.assertIn("another case", self.command("run", case, "-o", "moved", "--resume", expect=2).stderr)
@@ -255,9 +255,9 @@ on = "fixed"
 on = ["left", "right", "bottom", "top"]
 pressure = "400 MPa * (stretch - 1)"
 [set.corner]
-where = "x < 1e-9 && y < 1e-9"
+where = "x < 1 um && y < 1 um"
 [set.foot]
-where = "y < 1e-9"
+where = "y < 1 um"
 [[load]]
 on = "corner"
 displacement = [0, "free"]
