@@ -10,8 +10,8 @@
 namespace riven {
 
 /// A material as elements use it: all of its response at every quadrature point, or without U(J), which then
-/// is a function of the element's mean J. Where it relaxes, its response is that of a step from what the
-/// point remembers.
+/// is a function of one J of the element: its mean, or that at the centre. Where it relaxes, its response is
+/// that of a step from what the point remembers.
 struct ElementLaw {
   Material local;
   Kinematics kinematics = Kinematics::solid;
@@ -30,7 +30,7 @@ struct ElementLaw {
   [[nodiscard]] Step step(const double* memory, double dt) const {
     return viscous ? viscous->step(memory, dt) : Step{};
   }
-  /// Energy, stress and tangent at a quadrature point, without what the mean J gives.
+  /// Energy, stress and tangent at a quadrature point, without what the element's J gives.
   template <int D>
   [[nodiscard]] ResponseIn<D> respond(const Eigen::Matrix<double, D, D>& f, const Step& step) const {
     if constexpr (D == 3) {

@@ -42,7 +42,14 @@ std::vector<ElementLaw> element_laws(const FiniteElementsSettings& settings, int
     any_mean = any_mean || mean;
     laws.emplace_back(material, kinematics, mean);
   }
-  if (settings.dilatation == Dilatation::mean && !any_mean)
+  if (sheet && settings.dilatation == Dilatation::selective)
+    throw InputError(
+        "in plane stress selective integration would take the pressure with the thickness stretch of the "
+        "centre, "
+        "and the rest with that of each point: a stress would be left across the sheet, in which nothing "
+        "locks; "
+        "expected dilatation = \"full\", or none");
+  if (settings.dilatation.value_or(Dilatation::full) != Dilatation::full && !any_mean)
     throw InputError(
         sheet ? "in plane stress nothing locks; expected dilatation = \"full\", or none"
               : "no material has a bulk_modulus, so that none has a part of its energy that is of the "
@@ -67,6 +74,7 @@ class FiniteElements::Kernel {
   std::vector<double> lumped;    // m^3, of each element's nodes
   std::vector<ElementLaw> laws;  // by material
   PointMemory memory;
+  bool selective = false;  // U is taken at the centres
 };
 
 template <class E>
@@ -79,8 +87,10 @@ class FiniteElements::KernelOf final : public Kernel {
   using Stiffness = Eigen::Matrix<double, kDofs, kDofs>;
   using Slopes = Eigen::Map<const Nodal>;
 
-  KernelOf(const MeshBody& mesh, std::vector<ElementLaw> element_laws) : mesh_(mesh) {
+  KernelOf(const MeshBody& mesh, std::vector<ElementLaw> element_laws, bool at_centre) : mesh_(mesh) {
     laws = std::move(element_laws);
+    selective = at_centre;
+    if (selective) make_centre_slopes();
     lumped = mesh.lumped_volumes();
     make_slopes();
     make_pieces();
@@ -143,6 +153,14 @@ class FiniteElements::KernelOf final : public Kernel {
     return static_cast<std::size_t>(dof % D) * mesh_.node.size() +
            mesh_.nodes(e)[static_cast<std::size_t>(dof / D)];
   }
+  /// Undeformed places of an element's nodes (m).
+  [[nodiscard]] Nodal places(std::size_t e) const {
+    Nodal x;
+    for (int a = 0; a < N; ++a)
+      for (int d = 0; d < D; ++d)
+        x(a, d) = mesh_.node[mesh_.nodes(e)[static_cast<std::size_t>(a)]][static_cast<std::size_t>(d)];
+    return x;
+  }
   [[nodiscard]] Nodal nodal(std::span<const double> u, std::size_t e) const {
     Nodal v;
     const auto nodes = mesh_.nodes(e);
@@ -160,7 +178,12 @@ class FiniteElements::KernelOf final : public Kernel {
   }
   [[nodiscard]] const ElementLaw& law_of(std::size_t e) const { return laws[mesh_.material_of(e)]; }
 
+  [[nodiscard]] Tensor centre_gradient(const Nodal& moved, std::size_t e) const {
+    return Tensor::Identity() + moved.transpose() * centre_[e];
+  }
+
   void make_slopes();
+  void make_centre_slopes();
   void make_pieces();
   void make_gather();
   void make_memory();
@@ -180,6 +203,7 @@ class FiniteElements::KernelOf final : public Kernel {
   [[nodiscard]] std::size_t sweep_piece(const Piece& piece, std::span<const double> u);
   void add_mean(const ElementLaw& law, std::size_t e, std::size_t at,
                 const std::array<double*, kComponents>& f, const std::array<double*, kComponents>& p);
+  [[nodiscard]] Nodal add_centre(const ElementLaw& law, std::size_t e, const Nodal& moved);
   void gather(std::span<double> to, double sign) const;
   [[nodiscard]] Stiffness stiffness(std::span<const double> u, std::size_t e) const;
   [[nodiscard]] double mean_dilatation(const Nodal& moved, std::size_t e) const;
@@ -188,6 +212,7 @@ class FiniteElements::KernelOf final : public Kernel {
   std::vector<double> slope_;       // of element, quadrature point, direction, node (1/m)
   std::vector<double> weight_;      // of element, quadrature point (m^3)
   std::vector<double> volume_;      // of elements (m^3)
+  std::vector<Nodal> centre_;       // slopes at their centres (1/m), if U is taken there
   std::vector<std::size_t> order_;  // elements by material
   std::vector<Piece> pieces_;
   std::vector<std::size_t> first_;         // of each node, in `slot_`
@@ -201,10 +226,7 @@ template <class E>
 void FiniteElements::KernelOf<E>::make_slopes() {
   const auto rule = E::rule();
   for (std::size_t e = 0; e < mesh_.elements(); ++e) {
-    Nodal x;
-    for (int a = 0; a < N; ++a)
-      for (int d = 0; d < D; ++d)
-        x(a, d) = mesh_.node[mesh_.nodes(e)[static_cast<std::size_t>(a)]][static_cast<std::size_t>(d)];
+    const Nodal x = places(e);
     volume_.push_back(0);
     for (const auto& point : rule) {
       const auto f = E::at(point.at);
@@ -214,6 +236,16 @@ void FiniteElements::KernelOf<E>::make_slopes() {
       weight_.push_back(point.weight * jacobian.determinant() * (D == 2 ? mesh_.thickness : 1));
       volume_.back() += weight_.back();
     }
+  }
+}
+
+template <class E>
+void FiniteElements::KernelOf<E>::make_centre_slopes() {
+  const auto f = E::at(E::rule().front().at * (E::N == E::D + 1 ? 1 : 0));
+  for (std::size_t e = 0; e < mesh_.elements(); ++e) {
+    const Nodal x = places(e);
+    const Tensor jacobian = x.transpose() * f.slope;
+    centre_.push_back(f.slope * jacobian.inverse());
   }
 }
 
@@ -310,8 +342,9 @@ std::size_t FiniteElements::KernelOf<E>::sweep_piece(const Piece& piece, std::sp
     const std::size_t e = order_[n];
     element_energy_[e] = 0;
     for (std::size_t q = 0; q < kPoints; ++q) element_energy_[e] += weight_[e * kPoints + q] * energy[at + q];
-    if (law.mean) add_mean(law, e, at, f, p);
-    Nodal force = Nodal::Zero();
+    const bool centre = law.mean && selective;
+    if (law.mean && !centre) add_mean(law, e, at, f, p);
+    Nodal force = centre ? add_centre(law, e, nodal(u, e)) : Nodal::Zero();
     for (std::size_t q = 0; q < kPoints; ++q) {
       Tensor stress;
       for (int c = 0; c < D * D; ++c) stress(c / D, c % D) = p[static_cast<std::size_t>(c)][at + q];
@@ -365,8 +398,22 @@ void FiniteElements::KernelOf<E>::add_mean(const ElementLaw& law, std::size_t e,
     for (int c = 0; c < D * D; ++c) p[static_cast<std::size_t>(c)][at + q] += first * g[q](c / D, c % D);
 }
 
+/// Adds V U(J at the centre) to the energy of an element; returns the force of it, eq. (15) with the centre
+/// as the only point.
+template <class E>
+typename FiniteElements::KernelOf<E>::Nodal FiniteElements::KernelOf<E>::add_centre(const ElementLaw& law,
+                                                                                    std::size_t e,
+                                                                                    const Nodal& moved) {
+  const Tensor f = centre_gradient(moved, e);
+  double first = 0, second = 0;
+  element_energy_[e] += volume_[e] * volume_energy(*law.mean, f.determinant(), first, second);
+  return volume_[e] * first * centre_[e] * cofactor<D>(f).transpose();
+}
+
+/// The J of an element that U is taken of.
 template <class E>
 double FiniteElements::KernelOf<E>::mean_dilatation(const Nodal& moved, std::size_t e) const {
+  if (selective) return centre_gradient(moved, e).determinant();
   double j = 0;
   for (std::size_t q = 0; q < kPoints; ++q)
     j += weight_[e * kPoints + q] * gradient(moved, e, q).determinant() / volume_[e];
@@ -384,22 +431,31 @@ typename FiniteElements::KernelOf<E>::Stiffness FiniteElements::KernelOf<E>::sti
   Stiffness k = Stiffness::Zero();
   Eigen::Matrix<double, kDofs, 1> sum = Eigen::Matrix<double, kDofs, 1>::Zero();  // q of eq. (16)
   Eigen::Matrix<double, D * D, kDofs> b = Eigen::Matrix<double, D * D, kDofs>::Zero();
-  for (std::size_t q = 0; q < kPoints; ++q) {
-    const double w = weight_[e * kPoints + q];
-    const auto slope = slopes(e, q);
+  const auto set_slopes = [&b](const auto& slope) {
     for (int a = 0; a < N; ++a)
       for (int i = 0; i < D; ++i)
         for (int j = 0; j < D; ++j) b(D * i + j, D * a + i) = slope(a, j);
+  };
+  // Of the energy w U'(J) J at a point: its tangent, and its part of q.
+  const auto dilate = [&](const Tensor& f, double w) {
+    const Tensor g = f.inverse().transpose();
+    const auto flat_g = flat<D>(g);
+    sum += w * b.transpose() * flat<D>(cofactor<D>(f));
+    return typename ResponseIn<D>::Tangent(
+        first * f.determinant() * (flat_g * flat_g.transpose() + derivative_of_inverse_transpose<D>(g)));
+  };
+  const bool centre = law.mean && selective;
+  for (std::size_t q = 0; q < kPoints; ++q) {
+    const double w = weight_[e * kPoints + q];
+    set_slopes(slopes(e, q));
     const Tensor f = gradient(moved, e, q);
     typename ResponseIn<D>::Tangent tangent = law.template respond<D>(f, step_of(e, q)).tangent;
-    if (law.mean) {
-      const Tensor g = f.inverse().transpose();
-      const auto flat_g = flat<D>(g);
-      tangent +=
-          first * f.determinant() * (flat_g * flat_g.transpose() + derivative_of_inverse_transpose<D>(g));
-      sum += w * b.transpose() * flat<D>(cofactor<D>(f));
-    }
+    if (law.mean && !centre) tangent += dilate(f, w);
     k.noalias() += w * b.transpose() * (tangent * b).eval();
+  }
+  if (centre) {
+    set_slopes(centre_[e]);
+    k += volume_[e] * b.transpose() * (dilate(centre_gradient(moved, e), volume_[e]) * b).eval();
   }
   if (law.mean) k += second / volume_[e] * sum * sum.transpose();
   return 0.5 * (k + k.transpose());
@@ -492,8 +548,10 @@ FiniteElements::FiniteElements(MeshBody mesh, FiniteElementsSettings settings)
       dimension_(static_cast<std::size_t>(mesh_.dimension())) {
   check_elements(mesh_);
   std::vector<ElementLaw> laws = element_laws(settings, mesh_.dimension());
-  with_element(mesh_.shape,
-               [&]<class E>(E) { kernel_ = std::make_unique<KernelOf<E>>(mesh_, std::move(laws)); });
+  with_element(mesh_.shape, [&]<class E>(E) {
+    kernel_ =
+        std::make_unique<KernelOf<E>>(mesh_, std::move(laws), settings.dilatation == Dilatation::selective);
+  });
 }
 
 FiniteElements::~FiniteElements() = default;
@@ -502,9 +560,10 @@ std::optional<Breakdown> FiniteElements::internal_force(std::span<const double> 
   const auto wrong = kernel_->force(u, force);
   if (!wrong) return std::nullopt;
   if (const auto turned = kernel_->turned_over(u))
-    return Breakdown{mesh_.centre(*turned), fmt::format("element {} is turned inside out", *turned + 1)};
+    return Breakdown{mesh_.centre(*turned),
+                     fmt::format("element {} is turned inside out", mesh_.label(*turned))};
   return Breakdown{mesh_.centre(*wrong),
-                   fmt::format("the law says nothing of the strain of element {}", *wrong + 1)};
+                   fmt::format("the law says nothing of the strain of element {}", mesh_.label(*wrong))};
 }
 
 double FiniteElements::strain_energy(std::span<const double> u) {
@@ -533,7 +592,8 @@ void FiniteElements::tangent(std::span<const double> u, std::size_t first, std::
 std::optional<Breakdown> FiniteElements::inspect(std::span<const double> u) {
   const auto turned = kernel_->turned_over(u);
   if (!turned) return std::nullopt;
-  return Breakdown{mesh_.centre(*turned), fmt::format("element {} is turned inside out", *turned + 1)};
+  return Breakdown{mesh_.centre(*turned),
+                   fmt::format("element {} is turned inside out", mesh_.label(*turned))};
 }
 
 void FiniteElements::move(std::span<double> u, const std::array<std::array<double, 3>, 3>& gradient,
@@ -587,10 +647,11 @@ std::vector<std::string> FiniteElements::describe() const {
                                 [](const ElementLaw& law) { return law.mean.has_value(); });
   const std::size_t points =
       with_element(mesh_.shape, []<class E>(E) { return static_cast<std::size_t>(E::Q); });
-  return {
-      fmt::format("mesh: {} elements {} of {} quadrature points, {} nodes, mean size {:.6g} m",
-                  mesh_.elements(), name_of(mesh_.shape), points, mesh_.node.size(), body_.spacing),
-      fmt::format("change of volume: {}", mean ? "its mean over each element" : "at every quadrature point")};
+  return {fmt::format("mesh: {} elements {} of {} quadrature points, {} nodes, mean size {:.6g} m",
+                      mesh_.elements(), name_of(mesh_.shape), points, mesh_.node.size(), body_.spacing),
+          fmt::format("change of volume: {}", kernel_->selective ? "at the centre of each element"
+                                              : mean             ? "its mean over each element"
+                                                                 : "at every quadrature point")};
 }
 
 }  // namespace riven

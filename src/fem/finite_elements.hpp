@@ -13,6 +13,7 @@ namespace riven {
 enum class Dilatation {
   full,  // at every quadrature point: locks if nearly incompressible, except in plane stress
   mean,  // its mean over the element: W(F) without U, and V U(mean of J), eq. (15) of the theory
+  selective,  // at the element's centre: W(F) without U, and V U(J there), selective reduced integration
 };
 
 struct FiniteElementsSettings {
@@ -29,8 +30,8 @@ struct FiniteElementsSettings {
 /// up, stored or not.
 class FiniteElements final : public Model {
  public:
-  /// Throws InputError for elements that are turned over, a mean dilatation that no material has, and
-  /// incompressible materials in anything but plane stress.
+  /// Throws InputError for elements that are turned over, a mean or selective dilatation that no material has,
+  /// and incompressible materials in anything but plane stress.
   FiniteElements(MeshBody mesh, FiniteElementsSettings settings);
   ~FiniteElements() override;
   FiniteElements(FiniteElements&&) = delete;  // the kernel looks at the mesh

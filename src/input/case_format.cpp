@@ -10,6 +10,7 @@
 #include "input/contact_format.hpp"
 #include "input/crack_format.hpp"
 #include "input/crack_probe_format.hpp"
+#include "input/element_mesh.hpp"
 #include "input/elements_format.hpp"
 #include "input/failure_format.hpp"
 #include "input/field_format.hpp"
@@ -27,6 +28,7 @@ namespace {
 using kind::AnyUnit;
 using kind::Components;
 using kind::Flag;
+using kind::Formula;
 using kind::Integer;
 using kind::Interval;
 using kind::Part;
@@ -116,14 +118,18 @@ void check_load(const LoadInput& load, const Case& c, const Check& check) {
   for (const char* key : {"displacement", "velocity", "traction", "body_force"})
     if (check.given(key) && all_free(load.components()))
       check.fail(key, "every entry is \"free\"; expected a load");
+  if (load.pressure && !c.geometry.elements)
+    check.fail("pressure",
+               "acts on the sides of finite elements, and this body has points; expected `traction`, "
+               "which does not turn with the body");
   if (load.layer && load.traction.empty()) check.fail("layer", "belongs to traction");
   const std::vector<std::string> edges = edge_names(c);
   for (const Named& name : load.on) {
     const bool edge = std::find(edges.begin(), edges.end(), name.text) != edges.end();
-    if (!edge && !load.traction.empty())
-      check.fail("on", fmt::format("\"{}\" is a set, and a traction acts on an edge; expected {}, or "
-                                   "body_force instead of traction",
-                                   name.text, listed(edges)));
+    if (!edge && (!load.traction.empty() || load.pressure))
+      check.fail("on", fmt::format("\"{}\" is a set, and a {} acts on an edge; expected {}, or "
+                                   "body_force instead of it",
+                                   name.text, load.pressure ? "pressure" : "traction", listed(edges)));
     if (edge && !load.body_force.empty())
       check.fail("on", fmt::format("\"{}\" is an edge, and a body force acts on points; expected a set, "
                                    "nothing for the whole body, or traction instead of body_force",
@@ -132,26 +138,33 @@ void check_load(const LoadInput& load, const Case& c, const Check& check) {
 }
 
 Format describe(LoadInput& load, const Case& c) {
-  return {.doc = "What is prescribed on an edge or a set.",
-          .at = &load.at,
-          .keys = {Key{"on", Parts{&load.on},
-                       "An edge (left, right, bottom, top, back, front) or a set, or a list of them. Only a "
-                       "body_force may do without: it then acts on the whole body."},
-                   Key{"displacement", Components{&load.displacement},
-                       "One entry per direction: \"free\" or a length, a formula of x, y, z and stretch "
-                       "(statics) or t (in time)."},
-                   Key{"velocity", Components{&load.velocity, dimension::velocity},
-                       "The same for a velocity, from zero displacement at time 0 on."}
-                       .applies(in_time(c)),
-                   Key{"traction", Components{&load.traction, dimension::pressure},
-                       "The same for a force per undeformed area of an edge; \"free\" and 0 are no force."},
-                   Key{"body_force", Components{&load.body_force, force_density},
-                       "The same for a force per undeformed volume of a set, or of the whole body."},
-                   Key{"layer", Quantity{&load.layer, dimension::length, positive},
-                       "Points this near to the edge carry its traction, in proportion to their volumes; "
-                       "geometry.spacing unless given."}},
-          .groups = {{{"displacement", "velocity", "traction", "body_force"}}},
-          .finish = [&load, &c](const Check& check) { check_load(load, c, check); }};
+  return {
+      .doc = "What is prescribed on an edge or a set.",
+      .at = &load.at,
+      .keys =
+          {Key{"on", Parts{&load.on},
+               "An edge (left, right, bottom, top, back, front) or a set, or a list of them. Only a "
+               "body_force may do without: it then acts on the whole body."},
+           Key{"displacement", Components{&load.displacement},
+               "One entry per direction: \"free\" or a length, a formula of x, y, z and stretch "
+               "(statics) or t (in time)."},
+           Key{"velocity", Components{&load.velocity, dimension::velocity},
+               "The same for a velocity, from zero displacement at time 0 on."}
+               .applies(in_time(c)),
+           Key{"traction", Components{&load.traction, dimension::pressure},
+               "The same for a force per undeformed area of an edge; \"free\" and 0 are no force. It keeps "
+               "its direction and "
+               "size, as a dead pressure would."},
+           Key{"pressure", Formula{&load.pressure, dimension::pressure},
+               "Of finite elements: a force per deformed area of an edge, across it and into the body, which "
+               "turns and grows with it. In plane stress the area is that of the undeformed thickness."},
+           Key{"body_force", Components{&load.body_force, force_density},
+               "The same for a force per undeformed volume of a set, or of the whole body."},
+           Key{"layer", Quantity{&load.layer, dimension::length, positive},
+               "Points this near to the edge carry its traction, in proportion to their volumes; "
+               "geometry.spacing unless given."}},
+      .groups = {{{"displacement", "velocity", "traction", "pressure", "body_force"}}},
+      .finish = [&load, &c](const Check& check) { check_load(load, c, check); }};
 }
 
 Format describe(InitialInput& initial, const Case& c) {
@@ -499,11 +512,18 @@ std::vector<std::string> edge_names(const Case& of) {
   names.resize(2 * static_cast<std::size_t>(of.geometry.dimension));
   for (std::size_t face = names.size(); face-- > 0;)
     if (of.geometry.open_faces[face]) names.erase(names.begin() + static_cast<std::ptrdiff_t>(face));
+  const auto take = [&names](const std::string& name) { std::erase(names, name); };
+  for (const std::string& name : other_groups(of.geometry)) take(name);
+  for (const std::string& name : edge_groups(of.geometry)) {
+    take(name);  // the user's goes before a side of the box
+    names.push_back(name);
+  }
   return names;
 }
 
 std::vector<std::string> part_names(const Case& of) {
   std::vector<std::string> names = edge_names(of);
+  for (std::string& name : other_groups(of.geometry)) names.push_back(std::move(name));
   for (const SetInput& set : of.sets) names.push_back(set.name);
   return names;
 }

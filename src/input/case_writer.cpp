@@ -73,6 +73,9 @@ class ValueText {
   std::string operator()(const kind::Condition& k) const {
     return *k.to ? toml_string((*k.to)->written()) : "";
   }
+  std::string operator()(const kind::Formula& k) const {
+    return *k.to ? toml_string((*k.to)->written()) : "";
+  }
   std::string operator()(const kind::Components& k) const {
     return k.to->empty() ? "" : list(*k.to, [](const ComponentInput& c) {
       return c.value ? toml_string(c.value->written()) : toml_string("free");

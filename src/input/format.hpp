@@ -82,6 +82,11 @@ struct Places {
 struct Condition {
   std::optional<Expression>* to;
 };
+/// A formula of x, y, z and t or stretch.
+struct Formula {
+  std::optional<Expression>* to;
+  Dimension dimension;
+};
 /// One value per direction, a formula of x, y, z and, unless it belongs to the start, t or stretch; or
 /// "free".
 struct Components {
@@ -122,8 +127,8 @@ struct NamedTables {
 
 using Kind = std::variant<kind::Text, kind::Texts, kind::Flag, kind::Integer, kind::Integers, kind::Quantity,
                           kind::Quantities, kind::AnyUnit, kind::Place, kind::Places, kind::Condition,
-                          kind::Components, kind::Interval, kind::Part, kind::Parts, kind::Table,
-                          kind::Tables, kind::NamedTables>;
+                          kind::Formula, kind::Components, kind::Interval, kind::Part, kind::Parts,
+                          kind::Table, kind::Tables, kind::NamedTables>;
 
 /// A rule that holds while another key, read before, has one of some values.
 struct When {

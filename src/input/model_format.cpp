@@ -78,10 +78,10 @@ Format describe(ModelInput& model) {
                "rigid walls (1/4)."}
                .otherwise("\"stress\"")
                .applies(When{"kind", &model.kind, {"pmb", "lps", "correspondence", "finite-elements"}}),
-           Key{"dilatation", Text{&model.dilatation, {"mean", "full"}},
+           Key{"dilatation", Text{&model.dilatation, {"mean", "full", "selective"}},
                "How the change of volume enters an element's energy: by its mean, which does not lock where "
                "a "
-               "rubber is nearly incompressible, or at every quadrature point. Unless given: `mean` for laws "
+               "rubber is nearly incompressible, at every quadrature point, or at the centre alone (selective reduced integration). Unless given: `mean` for laws "
                "with "
                "a bulk_modulus in plane strain and in space."}
                .applies(kind("finite-elements")),

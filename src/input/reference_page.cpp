@@ -55,6 +55,7 @@ struct ValueText {
     return fmt::format("list of {} or more places, each a list as `[\"1 mm\", \"2 mm\"]`", k.least);
   }
   std::string operator()(const kind::Condition&) const { return "formula, true or false"; }
+  std::string operator()(const kind::Formula&) const { return "formula"; }
   std::string operator()(const kind::Components&) const {
     return "list, per direction a formula or `\"free\"`";
   }

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/nearest_name.hpp"
+#include "geometry/mesh_faults.hpp"
 #include "material/linear_elastic.hpp"
 #include "simulation/free_motions.hpp"
 #include "simulation/materials.hpp"
@@ -188,6 +189,7 @@ void check_data(const Simulation& simulation) {
   const auto& loads = simulation.input.loads;
   const auto first_that = [&loads](bool (Expression::*does)() const) {
     return std::find_if(loads.begin(), loads.end(), [does](const LoadInput& load) {
+      if (load.pressure) return ((*load.pressure).*does)();
       return std::any_of(load.components().begin(), load.components().end(),
                          [does](const ComponentInput& c) { return c.value && ((*c.value).*does)(); });
     });
@@ -197,13 +199,14 @@ void check_data(const Simulation& simulation) {
   if (first == loads.end()) return;
   std::vector<double> values = marched(simulation);
   if (calls == loads.end()) values.resize(1);
+  const std::vector<double> rest(simulation.model->dofs(), 0.0);
   for (const double value : values) {
     simulation.constraints->set_parameter(value);
     const auto offsets = simulation.constraints->offsets();
     const auto finite = [](double x) { return std::isfinite(x); };
     bool all = std::all_of(offsets.begin(), offsets.end(), finite);
     for (const AppliedForce& applied : simulation.applied) {
-      const Point total = applied.force->total(value);
+      const Point total = applied.total(rest, value);
       all = all && std::all_of(total.begin(), total.end(), finite);
     }
     if (!all)
@@ -425,6 +428,8 @@ std::vector<std::string> warnings(const Simulation& simulation) {
         fmt::format("the model \"{}\" has no energy and holds for the loading \"{}\" only: it is kept for "
                     "comparison; kind = \"membrane\" is the one to use",
                     simulation.input.model.kind, simulation.input.model.loading));
+  if (const auto& elements = simulation.input.geometry.elements; elements && elements->mesh)
+    for (std::string& odd : oddities(*elements->mesh)) list.push_back(std::move(odd));
   if (simulation.input.loads.empty() && simulation.input.initials.empty() &&
       simulation.input.impactors.empty())
     list.emplace_back("there is no load: nothing will move");

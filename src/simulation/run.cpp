@@ -129,8 +129,10 @@ RunStatus march_on(const Simulation& simulation, Recorder& recorder, Progress& s
 void keep_tables(Case& input, const std::filesystem::path& folder) {
   const bool cracks = std::any_of(input.cracks.begin(), input.cracks.end(),
                                   [](const CrackInput& crack) { return crack.file.has_value(); });
+  auto& elements = input.geometry.elements;
+  const bool meshed = elements && elements->mesh;
   if (!input.tables.empty() || !input.fields.empty() || input.geometry.points || input.geometry.surface ||
-      cracks)
+      meshed || cracks)
     std::filesystem::create_directories(folder / "tables");
   for (std::size_t n = 0; n < input.cracks.size(); ++n)  // no table has such a name
     if (auto& crack = input.cracks[n].file) {
@@ -142,6 +144,11 @@ void keep_tables(Case& input, const std::filesystem::path& folder) {
     const std::string copy = "tables/geometry-surface.stl";
     std::filesystem::copy_file(input.file.parent_path() / surface->file, folder / copy);
     surface->file = copy;
+  }
+  if (meshed) {
+    const std::string copy = "tables/geometry-mesh.msh";
+    std::filesystem::copy_file(input.file.parent_path() / elements->file, folder / copy);
+    elements->file = copy;
   }
   if (input.geometry.points) {
     // No table has this name: formulas could not call it.

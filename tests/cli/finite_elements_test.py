@@ -205,6 +205,30 @@ class FiniteElements(ProgramTest):
             text += '\n[set.corner]\nwhere = "x < -99 mm && y < -99 mm"\n'
             self.assertIn(motion, self.refused("run", self.write("case.toml", text)))
 
+    def test_elements_that_invert_are_named(self):
+        # A block that is pushed through its own support: the right end would pass the left one.
+        text = replaced(BLOCK, 'size = ["40 mm", "20 mm", "30 mm"], from = [0, 0, 0], elements = [3, 2, 2]',
+                        'size = ["40 mm", "20 mm"], from = [0, 0], thickness = "1 mm", elements = [4, 2]')
+        text = replaced(text.split("[[load]]")[0], 'element = "h8"\n', "").replace('"finite-elements"', '"finite-elements"\nplane = "strain"')
+        text += ('[[load]]\non = "left"\ndisplacement = [0, 0]\n\n[[load]]\non = "right"\ndisplacement = ["-45 mm * LOAD", 0]\n\n[solver]\nMETHOD\n')
+        text += '\n[[probe]]\nname = "force"\nkind = "reaction"\non = "right"\n'
+        statics = text.replace("LOAD", "(stretch - 1)").replace("METHOD", 'method = "newton"\nstretch = [1.2, 2]')
+        motion = text.replace("LOAD", "t / 10 ms").replace("METHOD", 'method = "METHOD"\nuntil = "10 ms"') + '\n[output]\nevery = "1 ms"\n'
+        step = 'until = "10 ms"\nstep = "0.1 ms"'
+        for name, case, when, advice in [
+                ("newton", statics, r"no equilibrium beyond 1\.\d+", "a finer mesh"),
+                ("relaxation", statics.replace('"newton"', '"dynamic-relaxation"'), r"no equilibrium beyond 1\.\d+", "a finer mesh"),
+                ("verlet", motion.replace("METHOD", "verlet"), r"at t = 0\.00\d+ s, step", "a smaller solver.safety"),
+                ("slabs", motion.replace("METHOD", "space-time").replace('until = "10 ms"', step), r"at t = 0\.00\d+ s, step", "a smaller solver.step"),
+                ("alpha", motion.replace("METHOD", "generalised-alpha").replace('until = "10 ms"', step), r"at t = 0\.00\d+ s, step",
+                 "a smaller solver.step")]:
+            said = self.command("run", self.write(f"{name}.toml", case), "-o", name, expect=3).stderr
+            self.assertRegex(said, when + r".*element \d+ is turned inside out at \(\S+, \S+, \S+\) m.* try .*" + advice)
+            self.assertRegex(said, rf"The last good state, (time|stretch) [\d.e-]+, is in {name}")
+            self.assertTrue((self.top / name / "fields/0000.vtu").exists())
+            self.assertEqual(self.summary(name)["status"], "failed")
+            self.assertGreater(len(history(self.top / name)[1]), 1)
+
 
 if __name__ == "__main__":
     unittest.main()
