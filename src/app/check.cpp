@@ -176,7 +176,7 @@ void print_cost(const Simulation& simulation) {
   if (simulation.parameter == Parameter::time) {
     const std::vector<double> rest(simulation.model->dofs(), 0.0);
     fmt::print("# stable step: {:.4g} s at rest\n",
-               stable_step(*simulation.model, *simulation.constraints, rest));
+               stable_step(*simulation.model, *simulation.constraints, rest, simulation.external));
   }
   const TimeEstimate time = time_estimate(simulation);
   fmt::print("# time: about {} on {} ({:.3g} {} of {:.2g} ms)\n", duration_text(time.total_s()),

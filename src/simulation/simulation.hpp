@@ -10,6 +10,7 @@
 #include "load/constraints.hpp"
 #include "load/contact_model.hpp"
 #include "load/distributed_force.hpp"
+#include "load/indenter.hpp"
 #include "model/model.hpp"
 #include "output/parameter.hpp"
 
@@ -44,7 +45,8 @@ struct Simulation {
   std::unique_ptr<Constraints> constraints;
   std::vector<PointSet> sets;
   std::vector<AppliedForce> applied;
-  ExternalForces external;                   // these, and whatever else acts from outside of the model
+  std::vector<std::shared_ptr<const Indenter>> indenters;  // impactors on finite elements
+  ExternalForces external;                   // these and whatever else acts from outside of the model
   std::vector<double> initial_u, initial_v;  // m, m/s: initial conditions; empty without any
 
   /// Number of a face by its name, or nothing.
