@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "app/commands.hpp"
@@ -79,6 +80,16 @@ std::string range(const TableFunction::Column& column) {
   const auto [least, most] = std::minmax_element(column.values.begin(), column.values.end());
   const std::string span = fmt::format("{} {:g} to {:g}", without_unit(column.name), *least, *most);
   return column.dimension == dimension::none ? span : fmt::format("{} {}", span, si_unit(column.dimension));
+}
+
+void print_indenters(const Simulation& simulation) {
+  constexpr std::array kShapes{"sphere", "plane", "flat"};
+  for (const auto& indenter : simulation.indenters) {
+    const IndenterSettings& settings = indenter->settings();
+    fmt::print("# impactor {}: {}, {}, {} nodes face it, {:.4g} N/m^3\n", settings.name,
+               kShapes[settings.shape.index()], settings.sticking ? "sticking" : "frictionless",
+               indenter->surface().size(), settings.stiffness);
+  }
 }
 
 void print_initial(const char* what, const char* unit, const std::vector<double>& state,
@@ -168,6 +179,7 @@ void print_model(const Simulation& simulation) {
   for (const std::string& line : model.describe()) fmt::print("# {}\n", line);
   print_sets(simulation);
   print_forces(simulation);
+  print_indenters(simulation);
   print_initial("displacement", "m", simulation.initial_u, simulation);
   print_initial("velocity", "m/s", simulation.initial_v, simulation);
 }
