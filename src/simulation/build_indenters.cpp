@@ -53,11 +53,9 @@ std::vector<LoadShare> surface_of(const ImpactorInput& in, const MeshBody& mesh)
   for (const NodeShare& share : facing.face_shares(0))
     surface.push_back({share.node, mesh.node[share.node], share.extent});
   if (surface.empty())
-    throw InputError(
-        in.at,
-        fmt::format("impactor {}: no side of the mesh faces it; expected a place outside "
-                    "of the body{}",
-                    in.name, in.flat ? ", with the body to the right of the way from `from` to `to`" : ""));
+    throw InputError(in.at, fmt::format("impactor {}: no side of the mesh faces it; expected a place outside "
+                                        "of the body",
+                                        in.name));
   return surface;
 }
 
@@ -126,11 +124,12 @@ void check_start(const Indenter& indenter, const ImpactorInput& in, const Simula
     const double depth = indenter.depth(n, u, start);
     const Point& at = indenter.surface()[n].position;
     if (depth > 1e-6 * simulation.body->spacing)
-      throw InputError(in.at,
-                       fmt::format("impactor {}: reaches {:.4g} m into the body at the start, at the "
-                                   "node at ({:.4g}, {:.4g}, {:.4g}) m; expected a place outside, from "
-                                   "which it moves in",
-                                   in.name, depth, at[0], at[1], at[2]));
+      throw InputError(
+          in.at, fmt::format("impactor {}: reaches {:.4g} m into the body at the start, at the node at "
+                             "({:.4g}, {:.4g}, {:.4g}) m; expected a place outside, from which it moves "
+                             "in{}",
+                             in.name, depth, at[0], at[1], at[2],
+                             in.flat ? ", the body to the right of the way from `from` to `to`" : ""));
   }
 }
 
