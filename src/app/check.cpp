@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "app/commands.hpp"
@@ -86,6 +87,16 @@ std::string range(const TableFunction::Column& column) {
   const auto [least, most] = std::minmax_element(column.values.begin(), column.values.end());
   const std::string span = fmt::format("{} {:g} to {:g}", without_unit(column.name), *least, *most);
   return column.dimension == dimension::none ? span : fmt::format("{} {}", span, si_unit(column.dimension));
+}
+
+void print_indenters(const Simulation& simulation) {
+  constexpr std::array kShapes{"sphere", "plane", "flat"};
+  for (const auto& indenter : simulation.indenters) {
+    const IndenterSettings& settings = indenter->settings();
+    fmt::print("# impactor {}: {}, {}, {} nodes face it, {:.4g} N/m^3\n", settings.name,
+               kShapes[settings.shape.index()], settings.sticking ? "sticking" : "frictionless",
+               indenter->surface().size(), settings.stiffness);
+  }
 }
 
 void print_initial(const char* what, const char* unit, const std::vector<double>& state,
@@ -177,6 +188,7 @@ void print_model(const Simulation& simulation) {
   print_edges(simulation);
   print_sets(simulation);
   print_forces(simulation);
+  print_indenters(simulation);
   print_initial("displacement", "m", simulation.initial_u, simulation);
   print_initial("velocity", "m/s", simulation.initial_v, simulation);
 }
@@ -185,7 +197,7 @@ void print_cost(const Simulation& simulation) {
   if (simulation.parameter == Parameter::time) {
     const std::vector<double> rest(simulation.model->dofs(), 0.0);
     fmt::print("# stable step of explicit methods: {:.4g} s at rest\n",
-               stable_step(*simulation.model, *simulation.constraints, rest));
+               stable_step(*simulation.model, *simulation.constraints, rest, simulation.external));
   }
   const TimeEstimate time = time_estimate(simulation);
   fmt::print("# time: about {} on {} ({:.3g} {} of {:.2g} ms)\n", duration_text(time.total_s()),

@@ -402,8 +402,8 @@ Format describe(ProbeInput& p, const Case& c) {
           "Instead of that largest value, what this metric, stretch or time was there."}
           .applies(kinds({"largest"})),
       Key{"impactor", Text{&p.impactor},
-          "The impactor whose position, velocity and force, that of the body on it, are followed: "
-          "name_position_x and so on."}
+          "The impactor whose position, velocity (of points) and force, that of the body on it, are "
+          "followed: name_position_x and so on."}
           .applies(kinds({"impactor"}))
           .required()};
   for (Key& key : crack_probe_keys(p)) keys.push_back(std::move(key));
@@ -567,8 +567,7 @@ Format describe(Case& c) {
                .applies(method(c, verlet)),
            Key{"impactor",
                tables(c.impactors, [&c](ImpactorInput& i, std::size_t) { return describe(i, c); }),
-               "Rigid impactors."}
-               .applies(method(c, verlet)),
+               "Rigid impactors."},
            Key{"output", Table{[&c] { return describe(c.output, c); }, always}, "The output."}.otherwise(
                "{}"),
            Key{"probe", tables(c.probes, [&c](ProbeInput& p, std::size_t) { return describe(p, c); }),

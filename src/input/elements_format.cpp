@@ -88,8 +88,7 @@ void refuse_bonds(const Case& c) {
   if (!c.interfaces.empty())
     refuse(c.interfaces.front().at, "bonds that break; expected a peridynamic model");
   if (!c.failure.not_in.empty()) refuse(c.failure.at, "bonds that break; expected a peridynamic model");
-  if (c.contact) refuse(c.contact->at, "contact yet; expected a peridynamic model");
-  if (!c.impactors.empty()) refuse(c.impactors.front().at, "contact yet; expected a peridynamic model");
+  if (c.contact) refuse(c.contact->at, "contact with itself yet; expected a peridynamic model");
   for (const MaterialInput& material : c.materials)
     if (material.breaks() || material.critical_damage)
       refuse(material.at, "bonds that break; expected no critical_stretch and the like");
@@ -99,8 +98,8 @@ void refuse_results(const Case& c) {
   for (const LoadInput& load : c.loads)
     if (load.layer)
       refuse(load.at, "layers of points; expected no `layer`: a traction acts on the edges of elements");
-  const std::vector<std::string> kinds{"reaction", "nominal-stress", "displacement",
-                                       "stretch",  "strain",         "largest"};
+  const std::vector<std::string> kinds{"reaction", "nominal-stress", "displacement", "stretch",
+                                       "strain",   "largest",        "impactor"};
   for (const ProbeInput& probe : c.probes)
     if (std::find(kinds.begin(), kinds.end(), probe.kind) == kinds.end())
       refuse(probe.at, fmt::format("\"{}\" to be followed; expected one of {}", probe.kind, listed(kinds)));

@@ -266,7 +266,8 @@ TimeEstimate time_estimate(const Simulation& simulation) {
         kIterations * std::ceil(solver.until / solver.step.value_or(solver.until / kStepsOfAMotion));
   } else if (simulation.parameter == Parameter::time) {
     const std::vector<double> rest(model.dofs(), 0.0);
-    const double step = solver.safety * stable_step(model, *simulation.constraints, rest);
+    const double step =
+        solver.safety * stable_step(model, *simulation.constraints, rest, simulation.external);
     estimate.evaluations = std::ceil(solver.until / solver.step.value_or(step));
   } else if (solver.method == "newton") {
     constexpr double kIterations = 3.5;  // of a load step

@@ -100,7 +100,7 @@ void check_step(const Simulation& simulation) {
   start.resize(simulation.model->dofs());
   simulation.constraints->set_parameter(0);
   simulation.constraints->apply(start);
-  const double limit = stable_step(*simulation.model, *simulation.constraints, start);
+  const double limit = stable_step(*simulation.model, *simulation.constraints, start, simulation.external);
   if (!solver.step && solver.until > kMostSteps * solver.safety * limit)
     throw InputError(
         solver.until_at,

@@ -117,7 +117,7 @@ void Probes::add_columns(const ProbeInput& probe) {
   if (probe.kind == "dissipated-energy") columns_.push_back({probe.name, "J"});
   if (probe.kind == "impactor") {
     vector(probe.name + "_position", "m");
-    vector(probe.name + "_velocity", "m/s");
+    if (simulation_.contact != nullptr) vector(probe.name + "_velocity", "m/s");
     vector(probe.name + "_force", "N");
   }
 }
@@ -201,12 +201,17 @@ Point Probes::force_on(std::size_t face, const State& state, const Constraints& 
   return force;
 }
 
-/// Position (m) and velocity (m/s) of an impactor, and the force (N) of the body on it.
-std::array<Point, 3> Probes::impactor_of(const ProbeInput& probe, const State& state) const {
+/// Position (m), in motion of points velocity (m/s) of an impactor, and the force (N) of the body on it.
+std::vector<Point> Probes::impactor_of(const ProbeInput& probe, const State& state) const {
   const std::vector<ImpactorInput>& inputs = simulation_.input.impactors;
   const auto found = std::find_if(inputs.begin(), inputs.end(),
                                   [&](const ImpactorInput& in) { return in.name == probe.impactor; });
   const auto n = static_cast<std::size_t>(found - inputs.begin());
+  if (simulation_.contact == nullptr) {
+    const Indenter& indenter = *simulation_.indenters[n];
+    return {moved(start_of(indenter.settings().shape), indenter.settings().way(state.parameter)),
+            indenter.force_on(state.u, state.parameter)};
+  }
   const ContactModel& contact = *simulation_.contact;
   const Point start = contact.impactors()[n].start();
   Point velocity{};

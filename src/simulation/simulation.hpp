@@ -11,6 +11,7 @@
 #include "load/contact_model.hpp"
 #include "load/distributed_force.hpp"
 #include "load/follower_pressure.hpp"
+#include "load/indenter.hpp"
 #include "model/model.hpp"
 #include "output/parameter.hpp"
 
@@ -40,8 +41,8 @@ struct AppliedForce {
   }
 };
 
-/// Everything a run needs, built from a case. Reactions are collected under the numbers of edges, and under the
-/// one after them for points and inclusions that are held.
+/// Everything a run needs, built from a case. Reactions are collected under the numbers of edges, and under
+/// the one after them for points and inclusions that are held.
 struct Simulation {
   Case input;
   Parameter parameter = Parameter::stretch;  // what the solver marches
@@ -52,7 +53,8 @@ struct Simulation {
   std::unique_ptr<Constraints> constraints;
   std::vector<PointSet> sets;
   std::vector<AppliedForce> applied;
-  ExternalForces external;                   // these, and whatever else acts from outside of the model
+  std::vector<std::shared_ptr<const Indenter>> indenters;  // impactors on finite elements
+  ExternalForces external;                   // these and whatever else acts from outside of the model
   std::vector<double> initial_u, initial_v;  // m, m/s: initial conditions; empty without any
 
   /// Number of a face by its name, or nothing.

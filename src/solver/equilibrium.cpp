@@ -28,6 +28,7 @@ FreeForces::FreeForces(Model& model, Constraints& constraints, const ExternalFor
 
 void FreeForces::rescale(const State& state) {
   model_.stiffness_bound(state.u, bound_);
+  for (const auto& external : external_) external->stiffness_bound(state.u, constraints_.parameter(), bound_);
   constraints_.fold(bound_);
   const double rows2 = ordered_sum_of(bound_.size(), [&](std::size_t i) { return bound_[i] * bound_[i]; });
   least_reaction_ = kLeastStrain * model_.spacing() * std::sqrt(rows2);

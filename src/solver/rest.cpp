@@ -28,6 +28,11 @@ class PartOf final : public ExternalForce {
     whole_->tangent(u, parameter, to);
     for (std::size_t n = before; n < to.values.size(); ++n) to.values[n] *= part_;
   }
+  void stiffness_bound(std::span<const double> u, double parameter, std::span<double> bound) const override {
+    std::vector<double> own(bound.size(), 0.0);
+    whole_->stiffness_bound(u, parameter, own);
+    for (std::size_t i = 0; i < own.size(); ++i) bound[i] += part_ * own[i];
+  }
   [[nodiscard]] double work(std::span<const double> u_before, double before, std::span<const double> u,
                             double parameter) const override {
     return part_ * whole_->work(u_before, before, u, parameter);

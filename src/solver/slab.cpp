@@ -208,7 +208,13 @@ void Slab::velocity(double s, std::span<double> v) const {
 double Slab::work(double s) const {
   double work = 0;
   for (std::size_t q = 0; q < power_.size(); ++q) work += integral_to(s, q, scheme_.stages) * power_[q];
-  return h_ * work;
+  work *= h_;
+  // So far what forces do on the body: what they came to hold meanwhile, as contacts do, is from outside too.
+  std::vector<double> u(external_.empty() ? 0 : u_.size());
+  if (!external_.empty()) displacement(s, u);
+  for (const auto& external : external_)
+    work += external->held(u, start_ + s * h_) - external->held(u_, start_);
+  return work;
 }
 
 double Slab::dissipated() const {

@@ -66,6 +66,7 @@ Snapshot TimeSteps::save() const {
   method_->save(to);
   constraints_.save(to);
   model_.save(to);
+  for (const auto& external : settings_.external) external->save(to);
   return to;
 }
 
@@ -73,6 +74,7 @@ void TimeSteps::restore(const Snapshot& from) {
   each_member(*this, from.restoring());
   constraints_.restore(from);
   model_.restore(from);
+  for (const auto& external : settings_.external) external->restore(from);
   method_->restore(from);
 }
 
@@ -89,11 +91,12 @@ void TimeSteps::begin() {
     std::fill(state_.v.begin(), state_.v.end(), 0.0);
   }
   if (const auto breakdown = evaluate(state_)) fail(state_, text(*breakdown));
+  for (const auto& external : settings_.external) external->advance(state_.u, 0);
   break_bonds();
   method_->restart(state_, internal_, force_);
-  wanted_ =
-      settings_.step.value_or(settings_.inertia ? kFirstStep * stable_step(model_, constraints_, state_.u)
-                                                : kFirstPart * settings_.until);
+  wanted_ = settings_.step.value_or(
+      settings_.inertia ? kFirstStep * stable_step(model_, constraints_, state_.u, settings_.external)
+                        : kFirstPart * settings_.until);
   least_ = kLeastStep * wanted_;
   balance(state_);
   state_.energy.external_work = state_.energy.total();
@@ -211,6 +214,7 @@ void TimeSteps::accept(State end) {
   check_energy();
   const bool output = outputs_.due(state_.parameter), row = history_.due(state_.parameter);
   if (output) check_points(state_);
+  for (const auto& external : settings_.external) external->advance(state_.u, state_.parameter);
   if (break_bonds()) {
     balance(state_);
     method_->restart(state_, internal_, force_);
@@ -250,8 +254,10 @@ void TimeSteps::balance(State& state) {
       ordered_sum_of(mass_.size(), [&](std::size_t i) { return 0.5 * mass_[i] * state.v[i] * state.v[i]; });
   energy.strain = model_.strain_energy(state.u) - rest_energy_;
   energy.dissipated = model_.dissipated_energy();
+  energy.held = 0;
+  for (const auto& external : settings_.external) energy.held += external->held(state.u, state.parameter);
   energy.largest = std::max({energy.largest, energy.kinetic, std::abs(energy.strain), energy.dissipated,
-                             energy.damped, std::abs(energy.external_work)});
+                             energy.damped, std::abs(energy.held), std::abs(energy.external_work)});
 }
 
 /// Energy of motions too small to tell from rounding.

@@ -195,6 +195,30 @@ class FiniteElements(ProgramTest):
         points = replaced(PLAIN, 'youngs_modulus = "6 MPa"\n', 'youngs_modulus = "6 MPa"\nrelaxation = [{ share = 0.5, time = "1 s" }]\n')
         self.assertIn('the model "membrane" has no memory', self.refused("check", self.write("points.toml", points)))
 
+    def test_impactors_push(self):
+        text = replaced(SHEET, 'on = ["left", "right", "bottom", "top"]\ndisplacement = ["(stretch - 1)*x", "(stretch - 1)*y"]',
+                        'on = "bottom"\ndisplacement = ["free", 0]\n\n[[load]]\non = "left"\ndisplacement = [0, "free"]')
+        text = replaced(text, 'on = "right"', 'on = "bottom"')
+        text += ('\n[[impactor]]\nname = "lid"\nplane = { point = [0, "0.1 m"], normal = [0, -1] }\n'
+                 'displacement = [0, "(1 - stretch) * 0.2 m"]\nstiffness = 1000\n'
+                 '\n[[probe]]\nname = "lid"\nkind = "impactor"\nimpactor = "lid"\n')
+        case = self.write("lid.toml", replaced(text, "stretch = [1.2, 1.4]", "stretch = [1.2]"))
+        said = self.command("check", case).stdout
+        self.assertIn("# impactor lid: plane, frictionless, 5 nodes face it", said)
+        again = self.command("check", self.write("again.toml", said)).stdout
+        self.assertEqual([line for line in said.splitlines() if "time:" not in line],
+                         [line for line in again.splitlines() if "time:" not in line])
+        self.command("run", case, "-o", "lid")
+        columns, rows = history(self.top / "lid")
+        at = {name.split(" ")[0]: n for n, name in enumerate(columns)}
+        self.assertNotIn("lid_velocity_x", at)
+        last = rows[-1]
+        self.assertAlmostEqual(last[at["lid_position_y"]], 0.06, delta=1e-15)
+        force = 2e6 * (0.8**-2 - 0.8) * 0.2 * 0.01  # uniaxial compression
+        self.assertAlmostEqual(last[at["lid_force_y"]] / force, 1, delta=2e-3)  # the penalty lets it in by 0.1 %
+        self.assertAlmostEqual(last[at["force_y"]] / last[at["lid_force_y"]], 1, delta=1e-7)
+        self.assertAlmostEqual(last[at["lid_force_x"]], 0, delta=1e-9 * force)
+
     def test_free_motions_are_named(self):
         free = replaced(SHEET, 'on = ["left", "right", "bottom", "top"]', "on = {}")
         for on, values, motion in [
