@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "base/disjoint_sets.hpp"
@@ -16,7 +17,7 @@ namespace {
 constexpr double kRounding = 1e-6;  // of a side: files keep six digits and more
 
 using Vector = Eigen::Vector3d;
-using SideKey = std::array<std::uint32_t, 4>;  // corners, ascending
+using SideKey = std::array<std::uint32_t, 4>;  // corners, ascending, and what no node is called
 
 /// A side of an element, its nodes in their order round it.
 struct ElementSide {
@@ -43,8 +44,9 @@ class MeshSides {
           side.all = side.node;
           if (dimension_ == 2 && number < others.size()) side.all.push_back(others[number]);
           SideKey key{};
+          key.fill(std::numeric_limits<std::uint32_t>::max());
           std::copy(side.node.begin(), side.node.end(), key.begin());
-          std::sort(key.begin(), key.begin() + static_cast<std::ptrdiff_t>(side.node.size()));
+          std::sort(key.begin(), key.end());
           found_[key].push_back(std::move(side));
           ++number;
         }
@@ -128,16 +130,17 @@ void check_parts(const Mesh& mesh, const MeshSides& sides, const std::string& fi
   });
   each([&](const ElementBlock& block, std::size_t n) {
     if (sets.root(block.corners(n)[0]) != least->first) return;
-    fail(file, block, n,
-         fmt::format("the mesh falls into {} parts that share no node; the least of {} element{} holds this "
-                     "one, at {}{}; expected one body",
-                     elements.size(), least->second, least->second == 1 ? "" : "s",
-                     text(mesh.node[block.corners(n)[0]]),
-                     torn == 0 ? std::string()
-                               : fmt::format(". {} pairs of nodes of different parts lie at one place: "
-                                             "\"Coherence;\" in Gmsh's drawing, or \"Coherence Mesh;\", makes "
-                                             "them one",
-                                             torn)));
+    fail(
+        file, block, n,
+        fmt::format("the mesh falls into {} parts that share no node; the least of {} element{} holds this "
+                    "one, at {}{}; expected one body",
+                    elements.size(), least->second, least->second == 1 ? "" : "s",
+                    text(mesh.node[block.corners(n)[0]]),
+                    torn == 0 ? std::string()
+                              : fmt::format(". {} pairs of nodes of different parts lie at one place: "
+                                            "\"Coherence;\" in Gmsh's drawing, or \"Coherence Mesh;\", makes "
+                                            "them one",
+                                            torn)));
   });
 }
 
@@ -210,16 +213,19 @@ std::vector<std::string> oddities(const Mesh& mesh) {
       for (const std::uint32_t node : block.others(n)) used[node] = true;
     }
   if (turned > 0)
-    list.push_back(fmt::format("{} elements of the mesh go clockwise, whole surfaces of them, and are turned "
-                               "over",
-                               turned));
+    list.push_back(
+        fmt::format("{} elements of the mesh go clockwise, whole surfaces of them, and are turned "
+                    "over",
+                    turned));
   if (const auto unused = std::count(used.begin(), used.end(), false); unused > 0)
-    list.push_back(fmt::format("{} nodes of the mesh belong to no element and are left out, the first at {}",
-                               unused, text(mesh.node[static_cast<std::size_t>(
-                                           std::find(used.begin(), used.end(), false) - used.begin())])));
+    list.push_back(fmt::format(
+        "{} nodes of the mesh belong to no element and are left out, the first at {}", unused,
+        text(
+            mesh.node[static_cast<std::size_t>(std::find(used.begin(), used.end(), false) - used.begin())])));
   if (const auto pairs = pairs_at_one_place(mesh, sides); !pairs.empty())
-    list.push_back(fmt::format("{} pairs of nodes lie at one place, the first at {}: the body has a slit there",
-                               pairs.size(), text(mesh.node[pairs[0].first])));
+    list.push_back(
+        fmt::format("{} pairs of nodes lie at one place, the first at {}: the body has a slit there",
+                    pairs.size(), text(mesh.node[pairs[0].first])));
   return list;
 }
 

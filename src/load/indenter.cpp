@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace riven {
@@ -72,6 +71,13 @@ Reach reach_of(const IndenterSettings& of, const Vector3d& at) {
   return std::visit([&](const auto& shape) { return reach(shape, at); }, of.shape);
 }
 
+/// Of g^2 / 2, at a depth g of which slope and bend are given.
+Local half_square(const Local& depth, double g) {
+  return {.value = 0.5 * g * g,
+          .slope = g * depth.slope,
+          .bend = depth.slope * depth.slope.transpose() + g * depth.bend};
+}
+
 /// Projects onto the indenter's surface at a place.
 Matrix3d along_surface(const IndenterSettings& of, const Vector3d& at) {
   const Vector3d normal = reach_of(of, at).depth.slope;
@@ -117,23 +123,23 @@ double Indenter::depth(std::size_t share, std::span<const double> u, double para
 Indenter::Push Indenter::push(std::size_t share, const Vector3d& at) const {
   const auto [depth, part] = reach_of(settings_, at);
   if (depth.value <= 0 || part.value == 0) return {};
-  Local square{.value = 0.5 * depth.value * depth.value,
-               .slope = depth.value * depth.slope,
-               .bend = depth.slope * depth.slope.transpose() + depth.value * depth.bend};
+  Local square = half_square(depth, depth.value),
+        tame = half_square(depth, std::min(depth.value, settings_.deepest));
   if (sticks_[share] != 0) {
     const Vector3d first = first_place(share);
     const Matrix3d along = along_surface(settings_, first);
     const Vector3d slip = along * (at - first);
-    square.value += 0.5 * slip.squaredNorm();
-    square.slope += slip;
-    square.bend += along;
+    for (Local* local : {&square, &tame}) {
+      local->value += 0.5 * slip.squaredNorm();
+      local->slope += slip;
+      local->bend += along;
+    }
   }
   const double size = settings_.stiffness * surface_[share].extent;
-  const Matrix3d mixed = square.slope * part.slope.transpose();
-  return {
-      .energy = size * part.value * square.value,
-      .slope = size * (part.value * square.slope + square.value * part.slope),
-      .stiffness = size * (part.value * square.bend + mixed + mixed.transpose() + square.value * part.bend)};
+  const Matrix3d mixed = tame.slope * part.slope.transpose();
+  return {.energy = size * part.value * square.value,
+          .slope = size * (part.value * square.slope + square.value * part.slope),
+          .stiffness = size * (part.value * tame.bend + mixed + mixed.transpose() + tame.value * part.bend)};
 }
 
 void Indenter::add(std::span<const double> u, std::span<const double> /*v*/, double parameter,

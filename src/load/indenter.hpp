@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <variant>
 #include <vector>
@@ -29,6 +30,10 @@ struct IndenterSettings {
   double stiffness = 0;                        // epsilon (N/m^3): pressure per depth
   bool sticking = false;                       // or frictionless
   double spacing = 0;                          // of the body's nodes (m)
+  /// The tangent of what is deeper is that of this depth (m), but for the stiffness along the normal: what a
+  /// round face takes from the stiffness across grows with the depth, and deep nodes are in states that are
+  /// only tried, from which it would lead astray.
+  double deepest = std::numeric_limits<double>::infinity();
 };
 
 /// A rigid body that pushes a part of a mesh's surface out of itself. It moves as prescribed and does not

@@ -16,6 +16,8 @@ using Eigen::Vector3d;
 // A side faces an indenter that it sees at less than 84 degrees from its normal.
 constexpr double kFacing = 0.1;
 constexpr double kFade = 0.25;  // of a spacing: beyond the ends of a flat
+// Of a spacing at stiffness 1: no pressure that a body stands makes nodes as deep as that.
+constexpr double kDeepest = 0.1;
 
 IndenterShape shape_of(const ImpactorInput& in, double spacing) {
   if (in.sphere) return RigidSphere{in.sphere->center, in.sphere->radius};
@@ -142,7 +144,8 @@ void build_indenters(Simulation& simulation) {
     IndenterSettings settings{.name = in.name,
                               .shape = shape_of(in, body.spacing),
                               .sticking = in.surface == "sticking",
-                              .spacing = body.spacing};
+                              .spacing = body.spacing,
+                              .deepest = kDeepest * body.spacing / in.stiffness};
     settings.stiffness = in.stiffness * stiffness_at(surface, *simulation.model, body.size(), body.dimension);
     settings.way = way_of(in, start_of(settings.shape), simulation);
     const auto indenter =

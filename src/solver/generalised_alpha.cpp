@@ -98,6 +98,12 @@ class GeneralisedAlpha final : public TimeStepMethod {
   [[nodiscard]] bool factor();
   [[nodiscard]] bool search(const std::vector<double>& direction);
   [[nodiscard]] double scale() const { return std::max(scale_, first_residual_); }
+  /// How far from balance the step is, and where most.
+  [[nodiscard]] std::string unrest() const {
+    return fmt::format("a residual of {:.2g} is left (solver.tolerance {:.2g}), the largest force at {}",
+                       residual_norm_ / scale(), tolerance_,
+                       text(model_.place(Watchdog::largest(residual_))));
+  }
   [[nodiscard]] double end_velocity(std::size_t i) const;
 
   Model& model_;
@@ -206,13 +212,10 @@ std::optional<std::string> GeneralisedAlpha::solve() {
       return std::nullopt;
     const double before = residual_norm_;
     const bool moved = search(direction);
-    if (!moved && fresh)
-      return fmt::format("no way down from a residual of {:.2g} (solver.tolerance {:.2g})",
-                         residual_norm_ / scale(), tolerance_);
+    if (!moved && fresh) return "no way down: " + unrest();
     stale = !moved || (residual_norm_ > kSlow * before && residual_norm_ > tolerance_ * scale());
   }
-  return fmt::format("not converged in {} iterations, a residual of {:.2g} is left (solver.tolerance {:.2g})",
-                     kMostIterations, residual_norm_ / scale(), tolerance_);
+  return fmt::format("not converged in {} iterations: {}", kMostIterations, unrest());
 }
 
 /// New factors, for the state that the iterations have come to. They serve until they are slow.

@@ -110,6 +110,13 @@ class SpaceTime final : public TimeStepMethod {
     return std::max({slab_.residual_scale(), first_residual_, least_force_});
   }
 
+  /// How far from balance the slab is, and where most.
+  [[nodiscard]] std::string unrest() const {
+    return fmt::format("a residual of {:.2g} is left (solver.tolerance {:.2g}), the largest force at {}",
+                       slab_.residual_norm() / scale(), tolerance_,
+                       text(model_.place(Watchdog::largest(slab_.residual()[1]))));
+  }
+
   void freeze();
   void thaw();
   bool assemble(std::span<const double> u, double time);
@@ -156,12 +163,9 @@ std::optional<std::string> SpaceTime::solve() {
     const double before = slab_.residual_norm();
     const bool moved = search(direction), slow = slab_.residual_norm() > kSlow * before;
     if (moved && (!slow || slab_.residual_norm() <= tolerance_ * scale())) continue;
-    if (!improve() && !moved)
-      return fmt::format("no way down from a residual of {:.2g} (solver.tolerance {:.2g})",
-                         slab_.residual_norm() / scale(), tolerance_);
+    if (!improve() && !moved) return "no way down: " + unrest();
   }
-  return fmt::format("not converged in {} iterations, a residual of {:.2g} is left (solver.tolerance {:.2g})",
-                     kMostIterations, slab_.residual_norm() / scale(), tolerance_);
+  return fmt::format("not converged in {} iterations: {}", kMostIterations, unrest());
 }
 
 /// Goes along a direction, all of it or a part that lessens the residual. If none does, everything stays.

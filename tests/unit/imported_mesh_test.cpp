@@ -63,7 +63,7 @@ TEST(ImportedMesh, HasSidesThatFaceOutwards) {
     const ImportedMesh found = imported(as_mesh(grid(shape)), shape);
     for (std::size_t edge = 6; edge < found.body.edges(); ++edge)
       for (const Side& side : found.body.sides(edge)) {
-        const auto x = [&](std::size_t a) {
+        const auto x = [&](std::size_t a) -> Eigen::Vector3d {
           return Eigen::Vector3d(found.body.node[side.node[a]].data()) - Eigen::Vector3d(0.5, 0.5, 0.5);
         };
         const Eigen::Vector3d along = x(1) - x(0);

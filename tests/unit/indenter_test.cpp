@@ -207,5 +207,26 @@ TEST(Indenter, BoundsItsTangent) {
   });
 }
 
+// What is deeper than it ever stays has the tangent of a depth that it may have: forces are the same, the
+// stiffness across, -g / R of the one along, is bounded.
+TEST(Indenter, IsTameWhereNodesAreDeep) {
+  const RigidSphere disc{{0, 1, 0}, 1};
+  const auto tangent = [&](double depth, double deepest) {
+    Indenter indenter({"punch", disc, [](double) { return Point{}; }, 7, false, 0.2, deepest},
+                      {{0, {0, depth, 0}, 1}}, 1, 2);
+    const std::vector<double> u(2, 0.0);
+    std::vector<double> force(2, 0.0);
+    indenter.add(u, {}, 0, force);
+    EXPECT_NEAR(force[1], -7 * depth, 1e-14);
+    TangentBlocks blocks;
+    indenter.tangent(u, 0, blocks);
+    EXPECT_NEAR(blocks.values[3], 7, 1e-14);
+    return blocks.values[0];
+  };
+  EXPECT_NEAR(tangent(0.05, 0.1), -7 * 0.05 / 0.95, 1e-14);
+  EXPECT_NEAR(tangent(0.5, 1), -7 * 0.5 / 0.5, 1e-14);
+  EXPECT_NEAR(tangent(0.5, 0.1), -7 * 0.1 / 0.5, 1e-14);
+}
+
 }  // namespace
 }  // namespace riven::testing
