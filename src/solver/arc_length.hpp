@@ -65,6 +65,7 @@ class ArcLength {
     each("arc.length", self.length_);
     each("arc.longest", self.longest_);
     each("arc.scale", self.scale_);
+    PathTangent::each_member(self.tangent_, each);
     FreeForces::each_member(self.forces_, each);
   }
   [[nodiscard]] Snapshot save() const;

@@ -9,8 +9,9 @@ namespace riven {
 
 namespace {
 
-// Of the row bounds, as the least one of Newton's method: keeps still what nothing holds.
-constexpr double kShift = 1e-10;
+// Of the row bounds: keeps still what nothing holds, as that of Newton's method does. Where all is held it is
+// left out: it would stiffen a long beam by some thousandths, and move the points where branches leave.
+constexpr double kShift = 1e-10, kNotHeld = 1e-12;
 constexpr int kInverseIterations = 30;
 
 }  // namespace
@@ -25,9 +26,19 @@ bool PathTangent::factor(std::span<const double> u, std::span<const double> row_
     factors_.analyse(matrix_->matrix());
   }
   matrix_->assemble(u, external_, constraints_.parameter());
+  if (shift_ < 0) {
+    shift_ = 0;
+    const double least = kNotHeld * *std::max_element(row_bounds.begin(), row_bounds.end());
+    if (factor_shifted(row_bounds) && std::abs(softest().stiffness) >= least) return true;
+    shift_ = kShift;
+  }
+  return factor_shifted(row_bounds);
+}
+
+bool PathTangent::factor_shifted(std::span<const double> row_bounds) {
   const auto entries = matrix_->entries();
   for (std::size_t row = 0; row < entries.size(); ++row)
-    matrix_->diagonal(row) += kShift * row_bounds[entries[row]];
+    matrix_->diagonal(row) += shift_ * row_bounds[entries[row]];
   return factors_.factor(matrix_->matrix());
 }
 

@@ -19,7 +19,8 @@ class PathTangent {
   PathTangent(Model& model, Constraints& constraints, const ExternalForces& external, double difference);
 
   /// Factors the tangent of a state, that of the last force evaluation at the constraints' parameter. False
-  /// if it is singular. Throws FactorFailure.
+  /// if it is singular. If the first one is, or nearly, as nothing holds the body in some direction, this and
+  /// all later ones have a small multiple of their row bounds added. Throws FactorFailure.
   [[nodiscard]] bool factor(std::span<const double> u, std::span<const double> row_bounds);
   /// Of the tangent last factored: how many directions it gives way in.
   [[nodiscard]] int negative() const { return factors_.negative(); }
@@ -39,7 +40,13 @@ class PathTangent {
   };
   [[nodiscard]] Mode softest();
 
+  template <class Self, class Each>
+  static void each_member(Self& self, const Each& each) {
+    each("tangent.shift", self.shift_);
+  }
+
  private:
+  [[nodiscard]] bool factor_shifted(std::span<const double> row_bounds);
   std::optional<std::string> forces_at(double parameter, State& state, FreeForces& forces,
                                        std::vector<double>& values);
 
@@ -47,6 +54,7 @@ class PathTangent {
   Constraints& constraints_;
   ExternalForces external_;
   double difference_;
+  double shift_ = -1;  // of the diagonal, in row bounds; below 0: not decided yet
   std::optional<TangentMatrix> matrix_;
   SymmetricFactors factors_;
 };

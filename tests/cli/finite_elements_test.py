@@ -1,11 +1,12 @@
 """Finite elements as users meet them: closed forms by every element and solver, loads, cells of the results, messages."""
 
 import json
+import re
 import unittest
 import xml.etree.ElementTree as ElementTree
 from math import exp
 
-from program import BOX, PLAIN, ProgramTest, history, replaced
+from program import BOX, PLAIN, ProgramTest, history, replaced, series
 
 ELEMENTS = 'box = { size = ["0.2 m", "0.2 m"], thickness = "10 mm", elements = [4, 3] }'
 SHEET = replaced(replaced(PLAIN, BOX, ELEMENTS), 'horizon = "3 dx"\n', "") + '\n[model]\nkind = "finite-elements"\n'
@@ -54,6 +55,45 @@ name = "side"
 kind = "displacement"
 component = "y"
 at = ["40 mm", "20 mm", "30 mm"]
+"""
+
+ARCH = """title = "Snapping arch"
+
+[geometry]
+arch = { span = "100 mm", rise = "10 mm", depth = "2 mm", thickness = "1 mm", elements = [20, 2] }
+element = "q8"
+
+[model]
+kind = "finite-elements"
+
+[material.rubber]
+law = "neo-hookean"
+c10 = "1 MPa"
+density = "1000 kg/m^3"
+
+[set.head]
+where = "abs(x) < 5 mm"
+
+[[load]]
+on = ["left", "right"]
+displacement = [0, 0]
+
+[[load]]
+on = "head"
+body_force = [0, "-1e4 N/m^3 * (stretch - 1)"]
+
+[solver]
+method = "newton"
+control = "arc-length"
+stretch = [30, 60]
+increment = 2
+tolerance = 1e-8
+
+[[probe]]
+name = "crown"
+kind = "displacement"
+component = "y"
+at = [0, "10 mm"]
 """
 
 
@@ -125,6 +165,30 @@ class FiniteElements(ProgramTest):
             # Of second order in the step: 1 % at the default's 0.8.
             self.assertLess(abs(energy["balance_error"]), 3e-4)
             self.assertGreater(energy["strain"]["value"] if isinstance(energy["strain"], dict) else energy["strain"], 0)
+
+    def test_a_path_goes_through_its_limit_points(self):
+        said = self.command("run", self.write("arch.toml", ARCH), "-o", "arch").stderr
+        limits = [float(text) for text in re.findall(r"limit point at stretch ([0-9.]+)", said)]
+        self.assertEqual(len(limits), 2)
+        rows = history(self.top / "arch")[1]
+        crowns = [row[1] for row in rows]
+        self.assertEqual(crowns, sorted(crowns, reverse=True))  # it goes down all the way
+        loads = [row[0] for row in rows]
+        top = next(n for n in range(len(rows)) if loads[n + 1] < loads[n])
+        bottom = min(range(top, len(rows)), key=lambda n: loads[n])
+        self.assertAlmostEqual(loads[top], limits[0], delta=0.1)
+        self.assertAlmostEqual(loads[bottom], limits[1], delta=0.1)
+        self.assertEqual([value for value, _ in series(self.top / "arch")], [30, 60])
+        summary = json.loads((self.top / "arch" / "summary.json").read_text())
+        self.assertLess(abs(summary["energy"]["balance_error"]), 1e-3)
+
+    def test_a_path_ends_after_its_steps(self):
+        text = replaced(ARCH, "increment = 2", "increment = 2\nmax_steps = 5")
+        said = self.command("run", self.write("arch.toml", text), "-o", "arch").stderr
+        self.assertIn("before it has reached 30", said)
+        rows = history(self.top / "arch")[1]
+        self.assertEqual(len(rows), 5)
+        self.assertEqual([value for value, _ in series(self.top / "arch")], [rows[-1][0]])
 
     def test_results_have_cells_and_are_drawn(self):
         for name, text, cells, kind in [("sheet", SHEET, 12, 9), ("block", BLOCK, 12, 12)]:

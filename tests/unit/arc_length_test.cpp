@@ -10,7 +10,9 @@
 
 #include "load/distributed_force.hpp"
 #include "solver/newton.hpp"
+#include "support/bodies.hpp"
 #include "support/finite_element_bodies.hpp"
+#include "support/loads.hpp"
 #include "support/pulled_point.hpp"
 #include "support/random.hpp"
 
@@ -244,6 +246,29 @@ TEST(ArcLength, TakesStepsOfTheLengthAskedFor) {
   }
 }
 
+// Steps far longer than what the path turns in are halved until they follow it, and are long again where it
+// is straight: the same limit points, no more steps than it takes.
+TEST(ArcLength, ShortensStepsWhereThePathTurns) {
+  const double h = 0.3, unit = 0.01;
+  Truss truss(1, h, 0);
+  Constraints constraints = hold_spring();
+  PathLog log;
+  const State state =
+      follow_path(truss, constraints, settings_of({40}, 3, 1000, {std::make_shared<ApexForce>(unit)}), log);
+  ASSERT_EQ(log.stretches("limit point").size(), 2U);
+  double longest = 0, shortest = 1e9;
+  const double softness = unit * std::pow(1 + h * h, 1.5) / (2 * h * h);
+  for (std::size_t n = 1; n < log.states.size(); ++n) {
+    const double length = std::hypot((log.states[n].u[1] - log.states[n - 1].u[1]) / softness,
+                                     log.states[n].parameter - log.states[n - 1].parameter);
+    longest = std::max(longest, length);
+    if (log.states[n].parameter < 40) shortest = std::min(shortest, length);
+  }
+  EXPECT_LT(shortest, 1.1);                    // a turn of 35 degrees takes about that
+  EXPECT_GT(longest, 0.9 * 3 * std::sqrt(2));  // the longest step
+  EXPECT_LT(state.steps, 60);
+}
+
 // Before a limit point, at it, where the tangent is singular, and behind it.
 TEST(ArcLength, ConvergesQuadratically) {
   Truss truss(1, 0.3, 0);
@@ -350,6 +375,19 @@ TEST(ArcLength, ResumesToTheSameBits) {
     EXPECT_EQ(first.outputs.size() + rest.outputs.size(), whole.outputs.size()) << stop;
     EXPECT_EQ(first.remarks.size() + rest.remarks.size(), whole.remarks.size()) << stop;
   }
+}
+
+// Rollers let the sheet slide along its loaded edges; nothing pushes it there, and it must stay.
+TEST(ArcLength, KeepsStillWhatNothingHolds) {
+  Membrane membrane(make_lattice_body(sheet(20, 14, 0.05, Faces(0b0011))), unit_laws()[1].material(), 4);
+  Constraints constraints = constrain(membrane, uniaxial());
+  PathLog log;
+  const State state = follow_path(membrane, constraints, settings_of({1.5}, 0.1, 100), log);
+  double mean = 0;
+  for (const std::size_t i : membrane.body().points) mean += state.u[membrane.body().size() + i];
+  mean /= static_cast<double>(membrane.body().points.size());
+  EXPECT_LT(std::abs(mean), 1e-5);  // as in the test of Newton's method
+  EXPECT_TRUE(log.remarks.empty());
 }
 
 TEST(ArcLength, RefusesLoadsThatStandStill) {
