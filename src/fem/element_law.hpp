@@ -9,7 +9,7 @@
 namespace riven {
 
 /// A material as elements use it: all of its response at every quadrature point, or without U(J), which then
-/// is a function of one J of the element: its mean, or that at the centre.
+/// is a function of a simpler J of the element: its mean, a linear fit, or that of its mean gradient.
 struct ElementLaw {
   Material local;
   Kinematics kinematics = Kinematics::solid;

@@ -118,8 +118,9 @@ void check_load(const LoadInput& load, const Case& c, const Check& check) {
     if (check.given(key) && all_free(load.components()))
       check.fail(key, "every entry is \"free\"; expected a load");
   if (load.pressure && !c.geometry.elements)
-    check.fail("pressure", "acts on the sides of finite elements, and this body has points; expected `traction`, "
-                           "which does not turn with the body");
+    check.fail("pressure",
+               "acts on the sides of finite elements, and this body has points; expected `traction`, "
+               "which does not turn with the body");
   if (load.layer && load.traction.empty()) check.fail("layer", "belongs to traction");
   const std::vector<std::string> edges = edge_names(c);
   for (const Named& name : load.on) {
@@ -136,30 +137,33 @@ void check_load(const LoadInput& load, const Case& c, const Check& check) {
 }
 
 Format describe(LoadInput& load, const Case& c) {
-  return {.doc = "What is prescribed on an edge or a set.",
-          .at = &load.at,
-          .keys = {Key{"on", Parts{&load.on},
-                       "An edge (left, right, bottom, top, back, front) or a set, or a list of them. Only a "
-                       "body_force may do without: it then acts on the whole body."},
-                   Key{"displacement", Components{&load.displacement},
-                       "One entry per direction: \"free\" or a length, a formula of x, y, z and stretch "
-                       "(statics) or t (in time)."},
-                   Key{"velocity", Components{&load.velocity, dimension::velocity},
-                       "The same for a velocity, from zero displacement at time 0 on."}
-                       .applies(in_time(c)),
-                   Key{"traction", Components{&load.traction, dimension::pressure},
-                       "The same for a force per undeformed area of an edge; \"free\" and 0 are no force. It keeps its direction and "
-                       "size, as a dead pressure would."},
-                   Key{"pressure", Formula{&load.pressure, dimension::pressure},
-                       "Of finite elements: a force per deformed area of an edge, across it and into the body, which "
-                       "turns and grows with it. In plane stress the area is that of the undeformed thickness."},
-                   Key{"body_force", Components{&load.body_force, force_density},
-                       "The same for a force per undeformed volume of a set, or of the whole body."},
-                   Key{"layer", Quantity{&load.layer, dimension::length, positive},
-                       "Points this near to the edge carry its traction, in proportion to their volumes; "
-                       "geometry.spacing unless given."}},
-          .groups = {{{"displacement", "velocity", "traction", "pressure", "body_force"}}},
-          .finish = [&load, &c](const Check& check) { check_load(load, c, check); }};
+  return {
+      .doc = "What is prescribed on an edge or a set.",
+      .at = &load.at,
+      .keys =
+          {Key{"on", Parts{&load.on},
+               "An edge (left, right, bottom, top, back, front) or a set, or a list of them. Only a "
+               "body_force may do without: it then acts on the whole body."},
+           Key{"displacement", Components{&load.displacement},
+               "One entry per direction: \"free\" or a length, a formula of x, y, z and stretch "
+               "(statics) or t (in time)."},
+           Key{"velocity", Components{&load.velocity, dimension::velocity},
+               "The same for a velocity, from zero displacement at time 0 on."}
+               .applies(in_time(c)),
+           Key{"traction", Components{&load.traction, dimension::pressure},
+               "The same for a force per undeformed area of an edge; \"free\" and 0 are no force. It keeps "
+               "its direction and "
+               "size, as a dead pressure would."},
+           Key{"pressure", Formula{&load.pressure, dimension::pressure},
+               "Of finite elements: a force per deformed area of an edge, across it and into the body, which "
+               "turns and grows with it. In plane stress the area is that of the undeformed thickness."},
+           Key{"body_force", Components{&load.body_force, force_density},
+               "The same for a force per undeformed volume of a set, or of the whole body."},
+           Key{"layer", Quantity{&load.layer, dimension::length, positive},
+               "Points this near to the edge carry its traction, in proportion to their volumes; "
+               "geometry.spacing unless given."}},
+      .groups = {{{"displacement", "velocity", "traction", "pressure", "body_force"}}},
+      .finish = [&load, &c](const Check& check) { check_load(load, c, check); }};
 }
 
 Format describe(InitialInput& initial, const Case& c) {

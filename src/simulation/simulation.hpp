@@ -40,8 +40,8 @@ struct AppliedForce {
   }
 };
 
-/// Everything a run needs, built from a case. Reactions are collected under the numbers of edges, and under the
-/// one after them for points and inclusions that are held.
+/// Everything a run needs, built from a case. Reactions are collected under the numbers of edges, and under
+/// the one after them for points and inclusions that are held.
 struct Simulation {
   Case input;
   Parameter parameter = Parameter::stretch;  // what the solver marches
