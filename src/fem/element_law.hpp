@@ -10,8 +10,8 @@
 namespace riven {
 
 /// A material as elements use it: all of its response at every quadrature point, or without U(J), which then
-/// is a function of one J of the element: its mean, or that at the centre. Where it relaxes, its response is
-/// that of a step from what the point remembers.
+/// is a function of a simpler J of the element: its mean, a linear fit, or that of its mean gradient. Where
+/// it relaxes, its response is that of a step from what the point remembers.
 struct ElementLaw {
   Material local;
   Kinematics kinematics = Kinematics::solid;

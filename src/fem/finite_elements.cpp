@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
@@ -44,10 +45,16 @@ std::vector<ElementLaw> element_laws(const FiniteElementsSettings& settings, int
   }
   if (sheet && settings.dilatation == Dilatation::selective)
     throw InputError(
+<<<<<<< HEAD
         "in plane stress selective integration would take the pressure with the thickness stretch of the "
         "centre, "
         "and the rest with that of each point: a stress would be left across the sheet, in which nothing "
         "locks; "
+=======
+        "in plane stress selective integration would take the pressure with one thickness stretch, and the "
+        "rest "
+        "with that of each point: a stress would be left across the sheet, in which nothing locks; "
+>>>>>>> meshes
         "expected dilatation = \"full\", or none");
   if (settings.dilatation.value_or(Dilatation::full) != Dilatation::full && !any_mean)
     throw InputError(
@@ -73,8 +80,12 @@ class FiniteElements::Kernel {
   [[nodiscard]] virtual std::vector<ModelField> fields(std::span<const double> u) const = 0;
   std::vector<double> lumped;    // m^3, of each element's nodes
   std::vector<ElementLaw> laws;  // by material
+<<<<<<< HEAD
   PointMemory memory;
   bool selective = false;  // U is taken at the centres
+=======
+  Dilatation dilatation = Dilatation::full;
+>>>>>>> meshes
 };
 
 template <class E>
@@ -86,13 +97,16 @@ class FiniteElements::KernelOf final : public Kernel {
   using Nodal = Eigen::Matrix<double, N, D>;
   using Stiffness = Eigen::Matrix<double, kDofs, kDofs>;
   using Slopes = Eigen::Map<const Nodal>;
+  using PerPoint = std::array<double, kPoints>;
+  using PerMode = Eigen::Matrix<double, D + 1, D + 1>;
 
-  KernelOf(const MeshBody& mesh, std::vector<ElementLaw> element_laws, bool at_centre) : mesh_(mesh) {
+  KernelOf(const MeshBody& mesh, std::vector<ElementLaw> element_laws, Dilatation of) : mesh_(mesh) {
     laws = std::move(element_laws);
-    selective = at_centre;
-    if (selective) make_centre_slopes();
+    dilatation = of;
     lumped = mesh.lumped_volumes();
     make_slopes();
+    make_modes();
+    if (of == Dilatation::selective) make_mean_slopes();
     make_pieces();
     make_gather();
     make_memory();
@@ -178,12 +192,13 @@ class FiniteElements::KernelOf final : public Kernel {
   }
   [[nodiscard]] const ElementLaw& law_of(std::size_t e) const { return laws[mesh_.material_of(e)]; }
 
-  [[nodiscard]] Tensor centre_gradient(const Nodal& moved, std::size_t e) const {
-    return Tensor::Identity() + moved.transpose() * centre_[e];
+  [[nodiscard]] Tensor mean_gradient(const Nodal& moved, std::size_t e) const {
+    return Tensor::Identity() + moved.transpose() * mean_slope_[e];
   }
 
   void make_slopes();
-  void make_centre_slopes();
+  void make_modes();
+  void make_mean_slopes();
   void make_pieces();
   void make_gather();
   void make_memory();
@@ -203,16 +218,22 @@ class FiniteElements::KernelOf final : public Kernel {
   [[nodiscard]] std::size_t sweep_piece(const Piece& piece, std::span<const double> u);
   void add_mean(const ElementLaw& law, std::size_t e, std::size_t at,
                 const std::array<double*, kComponents>& f, const std::array<double*, kComponents>& p);
-  [[nodiscard]] Nodal add_centre(const ElementLaw& law, std::size_t e, const Nodal& moved);
+  [[nodiscard]] Nodal add_selective(const ElementLaw& law, std::size_t e, const Nodal& moved);
   void gather(std::span<double> to, double sign) const;
   [[nodiscard]] Stiffness stiffness(std::span<const double> u, std::size_t e) const;
-  [[nodiscard]] double mean_dilatation(const Nodal& moved, std::size_t e) const;
+  [[nodiscard]] double mode(std::size_t e, std::size_t q, int m) const {
+    return mode_[(e * kPoints + q) * static_cast<std::size_t>(modes_) + static_cast<std::size_t>(m)];
+  }
+  [[nodiscard]] PerPoint projected(std::size_t e, const PerPoint& values) const;
+  [[nodiscard]] PerPoint dilatations(const Nodal& moved, std::size_t e) const;
 
   const MeshBody& mesh_;
   std::vector<double> slope_;       // of element, quadrature point, direction, node (1/m)
   std::vector<double> weight_;      // of element, quadrature point (m^3)
   std::vector<double> volume_;      // of elements (m^3)
-  std::vector<Nodal> centre_;       // slopes at their centres (1/m), if U is taken there
+  int modes_ = 1;                   // functions that J is projected on: a constant, or linear ones too
+  std::vector<double> mode_;        // of element, quadrature point, mode (m^-3/2)
+  std::vector<Nodal> mean_slope_;   // of elements (1/m), if U is taken of their mean gradient
   std::vector<std::size_t> order_;  // elements by material
   std::vector<Piece> pieces_;
   std::vector<std::size_t> first_;         // of each node, in `slot_`
@@ -239,13 +260,36 @@ void FiniteElements::KernelOf<E>::make_slopes() {
   }
 }
 
+/// 1 (and x, y, z), orthonormal over each element, by Gram and Schmidt.
 template <class E>
-void FiniteElements::KernelOf<E>::make_centre_slopes() {
-  const auto f = E::at(E::rule().front().at * (E::N == E::D + 1 ? 1 : 0));
+void FiniteElements::KernelOf<E>::make_modes() {
+  modes_ = dilatation == Dilatation::linear ? D + 1 : 1;
+  const auto rule = E::rule();
   for (std::size_t e = 0; e < mesh_.elements(); ++e) {
     const Nodal x = places(e);
-    const Tensor jacobian = x.transpose() * f.slope;
-    centre_.push_back(f.slope * jacobian.inverse());
+    const Eigen::Map<const Eigen::Array<double, Q, 1>> weight(weight_.data() + e * kPoints);
+    Eigen::Array<double, Q, D + 1> values = Eigen::Array<double, Q, D + 1>::Ones();
+    for (int q = 0; q < Q; ++q)
+      values.template rightCols<D>().row(q) =
+          (E::at(rule[static_cast<std::size_t>(q)].at).value.transpose() * x).array();
+    for (int m = 0; m < modes_; ++m) {
+      for (int pass = 0; pass < 2; ++pass)  // the second one takes what rounding has left
+        for (int n = 0; n < m; ++n)
+          values.col(m) -= (weight * values.col(m) * values.col(n)).sum() * values.col(n).eval();
+      values.col(m) /= std::sqrt((weight * values.col(m).square()).sum());
+    }
+    for (int q = 0; q < Q; ++q)
+      for (int m = 0; m < modes_; ++m) mode_.push_back(values(q, m));
+  }
+}
+
+/// At the centre of a four-node quadrilateral; the centre's own of other shapes would fail the patch test.
+template <class E>
+void FiniteElements::KernelOf<E>::make_mean_slopes() {
+  for (std::size_t e = 0; e < mesh_.elements(); ++e) {
+    Nodal sum = Nodal::Zero();
+    for (std::size_t q = 0; q < kPoints; ++q) sum += weight_[e * kPoints + q] * slopes(e, q);
+    mean_slope_.push_back(sum / volume_[e]);
   }
 }
 
@@ -342,9 +386,9 @@ std::size_t FiniteElements::KernelOf<E>::sweep_piece(const Piece& piece, std::sp
     const std::size_t e = order_[n];
     element_energy_[e] = 0;
     for (std::size_t q = 0; q < kPoints; ++q) element_energy_[e] += weight_[e * kPoints + q] * energy[at + q];
-    const bool centre = law.mean && selective;
-    if (law.mean && !centre) add_mean(law, e, at, f, p);
-    Nodal force = centre ? add_centre(law, e, nodal(u, e)) : Nodal::Zero();
+    const bool selective = law.mean && dilatation == Dilatation::selective;
+    if (law.mean && !selective) add_mean(law, e, at, f, p);
+    Nodal force = selective ? add_selective(law, e, nodal(u, e)) : Nodal::Zero();
     for (std::size_t q = 0; q < kPoints; ++q) {
       Tensor stress;
       for (int c = 0; c < D * D; ++c) stress(c / D, c % D) = p[static_cast<std::size_t>(c)][at + q];
@@ -358,6 +402,7 @@ std::size_t FiniteElements::KernelOf<E>::sweep_piece(const Piece& piece, std::sp
   return unanswered;
 }
 
+<<<<<<< HEAD
 /// Stresses and energies of an element that relaxes, whose gradients begin at `at`; keeps what its points
 /// will remember.
 template <class E>
@@ -380,44 +425,72 @@ void FiniteElements::KernelOf<E>::respond(const ElementLaw& law, std::size_t e, 
 
 /// Adds U'(mean of J) J F^-T to the stresses of an element, whose gradients begin at `at`, and V U to its
 /// energy.
+=======
+/// Adds what U gives to the stresses of an element, whose gradients begin at `at`, and to its energy: with
+/// the projected J, the integral of U and the projected U' times J F^-T.
+>>>>>>> meshes
 template <class E>
 void FiniteElements::KernelOf<E>::add_mean(const ElementLaw& law, std::size_t e, std::size_t at,
                                            const std::array<double*, kComponents>& f,
                                            const std::array<double*, kComponents>& p) {
   std::array<Tensor, kPoints> g;
-  double j = 0;
+  PerPoint j{}, pressure{};
   for (std::size_t q = 0; q < kPoints; ++q) {
     Tensor here;
     for (int c = 0; c < D * D; ++c) here(c / D, c % D) = f[static_cast<std::size_t>(c)][at + q];
     g[q] = cofactor<D>(here);
-    j += weight_[e * kPoints + q] * here.determinant() / volume_[e];
+    j[q] = here.determinant();
   }
-  double first = 0, second = 0;
-  element_energy_[e] += volume_[e] * volume_energy(*law.mean, j, first, second);
+  j = projected(e, j);
+  double second = 0;
   for (std::size_t q = 0; q < kPoints; ++q)
-    for (int c = 0; c < D * D; ++c) p[static_cast<std::size_t>(c)][at + q] += first * g[q](c / D, c % D);
+    element_energy_[e] += weight_[e * kPoints + q] * volume_energy(*law.mean, j[q], pressure[q], second);
+  pressure = projected(e, pressure);
+  for (std::size_t q = 0; q < kPoints; ++q)
+    for (int c = 0; c < D * D; ++c)
+      p[static_cast<std::size_t>(c)][at + q] += pressure[q] * g[q](c / D, c % D);
 }
 
+<<<<<<< HEAD
 /// Adds V U(J at the centre) to the energy of an element; returns the force of it, eq. (15) with the centre
 /// as the only point.
+=======
+/// Adds V U, of the J of the mean gradient, to the energy of an element; returns the force of it.
+>>>>>>> meshes
 template <class E>
-typename FiniteElements::KernelOf<E>::Nodal FiniteElements::KernelOf<E>::add_centre(const ElementLaw& law,
-                                                                                    std::size_t e,
-                                                                                    const Nodal& moved) {
-  const Tensor f = centre_gradient(moved, e);
+typename FiniteElements::KernelOf<E>::Nodal FiniteElements::KernelOf<E>::add_selective(const ElementLaw& law,
+                                                                                       std::size_t e,
+                                                                                       const Nodal& moved) {
+  const Tensor f = mean_gradient(moved, e);
   double first = 0, second = 0;
   element_energy_[e] += volume_[e] * volume_energy(*law.mean, f.determinant(), first, second);
-  return volume_[e] * first * centre_[e] * cofactor<D>(f).transpose();
+  return volume_[e] * first * mean_slope_[e] * cofactor<D>(f).transpose();
 }
 
-/// The J of an element that U is taken of.
+/// Values at quadrature points fitted by the modes, least squares over the element.
 template <class E>
-double FiniteElements::KernelOf<E>::mean_dilatation(const Nodal& moved, std::size_t e) const {
-  if (selective) return centre_gradient(moved, e).determinant();
-  double j = 0;
-  for (std::size_t q = 0; q < kPoints; ++q)
-    j += weight_[e * kPoints + q] * gradient(moved, e, q).determinant() / volume_[e];
-  return j;
+typename FiniteElements::KernelOf<E>::PerPoint FiniteElements::KernelOf<E>::projected(
+    std::size_t e, const PerPoint& values) const {
+  PerPoint fit{};
+  for (int m = 0; m < modes_; ++m) {
+    double c = 0;
+    for (std::size_t q = 0; q < kPoints; ++q) c += weight_[e * kPoints + q] * mode(e, q, m) * values[q];
+    for (std::size_t q = 0; q < kPoints; ++q) fit[q] += c * mode(e, q, m);
+  }
+  return fit;
+}
+
+/// The J that U is taken of.
+template <class E>
+typename FiniteElements::KernelOf<E>::PerPoint FiniteElements::KernelOf<E>::dilatations(const Nodal& moved,
+                                                                                        std::size_t e) const {
+  PerPoint j{};
+  if (dilatation == Dilatation::selective) {
+    j.fill(mean_gradient(moved, e).determinant());
+    return j;
+  }
+  for (std::size_t q = 0; q < kPoints; ++q) j[q] = gradient(moved, e, q).determinant();
+  return projected(e, j);
 }
 
 /// Rows and columns: nodes, and within them directions.
@@ -426,38 +499,53 @@ typename FiniteElements::KernelOf<E>::Stiffness FiniteElements::KernelOf<E>::sti
     std::span<const double> u, std::size_t e) const {
   const ElementLaw& law = law_of(e);
   const Nodal moved = nodal(u, e);
-  double first = 0, second = 0;
-  if (law.mean) volume_energy(*law.mean, mean_dilatation(moved, e), first, second);
+  PerPoint pressure{}, second{};  // U' and U''
+  if (law.mean) {
+    const PerPoint j = dilatations(moved, e);
+    for (std::size_t q = 0; q < kPoints; ++q) volume_energy(*law.mean, j[q], pressure[q], second[q]);
+    pressure = projected(e, pressure);
+  }
   Stiffness k = Stiffness::Zero();
-  Eigen::Matrix<double, kDofs, 1> sum = Eigen::Matrix<double, kDofs, 1>::Zero();  // q of eq. (16)
+  Eigen::Matrix<double, kDofs, D + 1> sum =
+      Eigen::Matrix<double, kDofs, D + 1>::Zero();  // q of eq. (16), by mode
+  PerMode stiffer = PerMode::Zero();                // U'', by modes
   Eigen::Matrix<double, D * D, kDofs> b = Eigen::Matrix<double, D * D, kDofs>::Zero();
   const auto set_slopes = [&b](const auto& slope) {
     for (int a = 0; a < N; ++a)
       for (int i = 0; i < D; ++i)
         for (int j = 0; j < D; ++j) b(D * i + j, D * a + i) = slope(a, j);
   };
-  // Of the energy w U'(J) J at a point: its tangent, and its part of q.
-  const auto dilate = [&](const Tensor& f, double w) {
+  // The tangent of J F^-T at a point, which goes into q there.
+  const auto dilate = [&](const Tensor& f, std::size_t q, double w) {
     const Tensor g = f.inverse().transpose();
     const auto flat_g = flat<D>(g);
-    sum += w * b.transpose() * flat<D>(cofactor<D>(f));
+    const Eigen::Matrix<double, kDofs, 1> pull = w * b.transpose() * flat<D>(cofactor<D>(f));
+    for (int m = 0; m < modes_; ++m) sum.col(m) += mode(e, q, m) * pull;
     return typename ResponseIn<D>::Tangent(
-        first * f.determinant() * (flat_g * flat_g.transpose() + derivative_of_inverse_transpose<D>(g)));
+        f.determinant() * (flat_g * flat_g.transpose() + derivative_of_inverse_transpose<D>(g)));
   };
-  const bool centre = law.mean && selective;
+  const bool selective = law.mean && dilatation == Dilatation::selective;
   for (std::size_t q = 0; q < kPoints; ++q) {
     const double w = weight_[e * kPoints + q];
     set_slopes(slopes(e, q));
     const Tensor f = gradient(moved, e, q);
+<<<<<<< HEAD
     typename ResponseIn<D>::Tangent tangent = law.template respond<D>(f, step_of(e, q)).tangent;
     if (law.mean && !centre) tangent += dilate(f, w);
+=======
+    typename ResponseIn<D>::Tangent tangent = law.template respond<D>(f).tangent;
+    if (law.mean && !selective) tangent += pressure[q] * dilate(f, q, w);
+>>>>>>> meshes
     k.noalias() += w * b.transpose() * (tangent * b).eval();
+    for (int m = 0; law.mean && m < modes_; ++m)
+      for (int n = 0; n < modes_; ++n) stiffer(m, n) += w * second[q] * mode(e, q, m) * mode(e, q, n);
   }
-  if (centre) {
-    set_slopes(centre_[e]);
-    k += volume_[e] * b.transpose() * (dilate(centre_gradient(moved, e), volume_[e]) * b).eval();
+  if (selective) {
+    set_slopes(mean_slope_[e]);
+    const double w = volume_[e];
+    k += w * pressure[0] * b.transpose() * (dilate(mean_gradient(moved, e), 0, w) * b).eval();
   }
-  if (law.mean) k += second / volume_[e] * sum * sum.transpose();
+  if (law.mean) k += sum * stiffer * sum.transpose();
   return 0.5 * (k + k.transpose());
 }
 
@@ -513,11 +601,15 @@ std::vector<ModelField> FiniteElements::KernelOf<E>::fields(std::span<const doub
   const auto rule = E::rule();
   for (std::size_t e = 0; e < mesh_.elements(); ++e) {
     const Nodal moved = nodal(u, e);
-    const double j = mean_dilatation(moved, e);
+    const PerPoint j = dilatations(moved, e);
     for (std::size_t q = 0; q < kPoints; ++q) {
+<<<<<<< HEAD
       const ElementLaw& law = law_of(e);
       const PointState state =
           point_state<D>(law, gradient(moved, e, q), j, memory.start() + memory_of(e, q), memory.elapsed());
+=======
+      const PointState state = point_state<D>(law_of(e), gradient(moved, e, q), j[q]);
+>>>>>>> meshes
       const double mises = state.mises();
       const auto value = E::at(rule[q].at).value;
       for (int a = 0; a < N; ++a) {
@@ -548,9 +640,21 @@ FiniteElements::FiniteElements(MeshBody mesh, FiniteElementsSettings settings)
       dimension_(static_cast<std::size_t>(mesh_.dimension())) {
   check_elements(mesh_);
   std::vector<ElementLaw> laws = element_laws(settings, mesh_.dimension());
+<<<<<<< HEAD
   with_element(mesh_.shape, [&]<class E>(E) {
     kernel_ =
         std::make_unique<KernelOf<E>>(mesh_, std::move(laws), settings.dilatation == Dilatation::selective);
+=======
+  const bool is_q8 = mesh_.shape == ElementShape::q8;
+  if (settings.dilatation == Dilatation::linear && !is_q8)
+    throw InputError(
+        fmt::format("a linear dilatation belongs to elements q8, and locks others; found {}, expected "
+                    "dilatation = \"mean\", or none",
+                    name_of(mesh_.shape)));
+  const Dilatation dilatation = settings.dilatation.value_or(is_q8 ? Dilatation::linear : Dilatation::mean);
+  with_element(mesh_.shape, [&]<class E>(E) {
+    kernel_ = std::make_unique<KernelOf<E>>(mesh_, std::move(laws), dilatation);
+>>>>>>> meshes
   });
 }
 
@@ -647,11 +751,22 @@ std::vector<std::string> FiniteElements::describe() const {
                                 [](const ElementLaw& law) { return law.mean.has_value(); });
   const std::size_t points =
       with_element(mesh_.shape, []<class E>(E) { return static_cast<std::size_t>(E::Q); });
+<<<<<<< HEAD
   return {fmt::format("mesh: {} elements {} of {} quadrature points, {} nodes, mean size {:.6g} m",
                       mesh_.elements(), name_of(mesh_.shape), points, mesh_.node.size(), body_.spacing),
           fmt::format("change of volume: {}", kernel_->selective ? "at the centre of each element"
                                               : mean             ? "its mean over each element"
                                                                  : "at every quadrature point")};
+=======
+  const std::map<Dilatation, const char*> ways{
+      {Dilatation::full, "at every quadrature point"},
+      {Dilatation::mean, "its mean over each element"},
+      {Dilatation::linear, "a linear fit over each element"},
+      {Dilatation::selective, "that of the mean gradient of each element"}};
+  return {fmt::format("mesh: {} elements {} of {} quadrature points, {} nodes, mean size {:.6g} m",
+                      mesh_.elements(), name_of(mesh_.shape), points, mesh_.node.size(), body_.spacing),
+          fmt::format("change of volume: {}", ways.at(mean ? kernel_->dilatation : Dilatation::full))};
+>>>>>>> meshes
 }
 
 }  // namespace riven

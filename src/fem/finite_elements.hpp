@@ -11,15 +11,17 @@ namespace riven {
 
 /// How an element's change of volume enters its energy.
 enum class Dilatation {
-  full,  // at every quadrature point: locks if nearly incompressible, except in plane stress
-  mean,  // its mean over the element: W(F) without U, and V U(mean of J), eq. (15) of the theory
-  selective,  // at the element's centre: W(F) without U, and V U(J there), selective reduced integration
+  full,       // at every quadrature point: locks if nearly incompressible, except in plane stress
+  mean,       // its mean over the element: W(F) without U, and V U(mean of J), eq. (15) of the theory
+  linear,     // of eight-node quadrilaterals: a linear fit of it, and the integral of U of that
+  selective,  // of its mean gradient, of `q4` that at the centre: selective reduced integration
 };
 
 struct FiniteElementsSettings {
   std::vector<Material> materials;  // by their numbers in the mesh
   Plane plane = Plane::stress;      // in two dimensions
-  /// `mean` where a material has a volumetric part and something holds the body across, unless given.
+  /// Where a material has a volumetric part and something holds the body across, `mean` unless given, of
+  /// eight-node quadrilaterals `linear`.
   std::optional<Dilatation> dilatation{};
 };
 
@@ -30,8 +32,8 @@ struct FiniteElementsSettings {
 /// up, stored or not.
 class FiniteElements final : public Model {
  public:
-  /// Throws InputError for elements that are turned over, a mean or selective dilatation that no material has,
-  /// and incompressible materials in anything but plane stress.
+  /// Throws InputError for elements that are turned over, a dilatation that no material has or that does not
+  /// fit the elements, and incompressible materials in anything but plane stress.
   FiniteElements(MeshBody mesh, FiniteElementsSettings settings);
   ~FiniteElements() override;
   FiniteElements(FiniteElements&&) = delete;  // the kernel looks at the mesh

@@ -145,10 +145,11 @@ class Importer {
   [[nodiscard]] std::uint32_t used(std::uint32_t node, const std::string& group) const {
     if (number_[node] != kNone) return number_[node];
     const Point& x = mesh_.node[node];
-    throw InputError(Location{file_},
-                     fmt::format("the node at ({:.6g}, {:.6g}, {:.6g}) m of the physical group \"{}\" belongs to "
-                                 "no element; expected nodes of the body",
-                                 x[0], x[1], x[2], group));
+    throw InputError(
+        Location{file_},
+        fmt::format("the node at ({:.6g}, {:.6g}, {:.6g}) m of the physical group \"{}\" belongs to "
+                    "no element; expected nodes of the body",
+                    x[0], x[1], x[2], group));
   }
 
   void add_group(std::size_t group) {
@@ -182,8 +183,8 @@ class Importer {
       for (std::size_t n = 0; n < block.size(); ++n) {
         std::vector<std::uint32_t> corners;
         for (const std::uint32_t node : block.corners(n)) corners.push_back(number_[node]);
-        const auto found = corners.size() == side_corners() ? with_key(key_of(corners))
-                                                            : std::span<const SideOfElement>{};
+        const auto found =
+            corners.size() == side_corners() ? with_key(key_of(corners)) : std::span<const SideOfElement>{};
         if (found.empty())
           throw InputError(Location{fmt::format("{}, element {}", file_, block.number[n])},
                            fmt::format("this {} of the physical group \"{}\" is not the side of an element; "
@@ -196,7 +197,8 @@ class Importer {
     std::sort(keys.begin(), keys.end());
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
     for (const SideKey& key : keys) edge.sides.push_back(side_at(with_key(key).front()));
-    for (const Side& side : edge.sides) part.nodes.insert(part.nodes.end(), side.node.begin(), side.node.end());
+    for (const Side& side : edge.sides)
+      part.nodes.insert(part.nodes.end(), side.node.begin(), side.node.end());
     edge.axis = axis_across(edge);
     imported_.body.group.push_back(std::move(edge));
   }

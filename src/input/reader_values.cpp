@@ -245,7 +245,8 @@ Named Reader::part(const toml::node& node, const Origin& origin) const {
   const std::array<std::string_view, 6> edges{"left", "right", "bottom", "top", "back", "front"};
   const bool is_edge = std::find(edges.begin(), edges.end(), name) != edges.end();
   const auto& points = case_.geometry.points;
-  const bool from_cad = case_.geometry.surface || is_element_mesh(case_.geometry) || (points && points->is_mesh());
+  const bool from_cad =
+      case_.geometry.surface || is_element_mesh(case_.geometry) || (points && points->is_mesh());
   if (is_edge && from_cad && std::find(known.begin(), known.end(), name) == known.end())
     origin.fail(
         fmt::format("the body has no edge \"{}\": its boundary does not cover all of that side of the box "

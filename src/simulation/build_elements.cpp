@@ -71,6 +71,7 @@ FiniteElementsSettings settings_of(const Case& in) {
   settings.plane = in.model.plane == "strain" ? Plane::strain : Plane::stress;
   if (!in.model.dilatation.empty())
     settings.dilatation = in.model.dilatation == "mean"        ? Dilatation::mean
+                          : in.model.dilatation == "linear"    ? Dilatation::linear
                           : in.model.dilatation == "selective" ? Dilatation::selective
                                                                : Dilatation::full;
   return settings;
@@ -84,9 +85,8 @@ void build_elements(Simulation& simulation) {
   MeshBody& mesh = imported.body;
   const Body nodes = nodes_as_body(mesh);
   for (const SetInput& set : in.sets)
-    simulation.sets.push_back(set.group.empty()
-                                  ? make_set(set, in, nodes, &mesh)
-                                  : set_of(part_named(set.group, imported.parts), set.name));
+    simulation.sets.push_back(set.group.empty() ? make_set(set, in, nodes, &mesh)
+                                                : set_of(part_named(set.group, imported.parts), set.name));
   for (const MeshPart& part : imported.parts)
     if (part.dimension != mesh.dimension() - 1) simulation.sets.push_back(set_of(part, part.name));
   mark_elements(in, simulation.sets, mesh);

@@ -67,9 +67,9 @@ TEST(ImportedMesh, HasSidesThatFaceOutwards) {
           return Eigen::Vector3d(found.body.node[side.node[a]].data()) - Eigen::Vector3d(0.5, 0.5, 0.5);
         };
         const Eigen::Vector3d along = x(1) - x(0);
-        const Eigen::Vector3d normal =
-            found.body.dimension() == 2 ? Eigen::Vector3d(along.cross(Eigen::Vector3d::UnitZ()))
-                                        : Eigen::Vector3d(along.cross(Eigen::Vector3d(x(2) - x(1))));
+        const Eigen::Vector3d normal = found.body.dimension() == 2
+                                           ? Eigen::Vector3d(along.cross(Eigen::Vector3d::UnitZ()))
+                                           : Eigen::Vector3d(along.cross(Eigen::Vector3d(x(2) - x(1))));
         EXPECT_GT(normal.dot(x(0)), 0);
       }
   }
@@ -94,7 +94,8 @@ TEST(ImportedMesh, TurnsClockwiseElementsOver) {
     for (const double v : found.body.lumped_volumes()) sum += v;
     EXPECT_NEAR(sum, volume, 1e-14);
     ASSERT_EQ(oddities(mesh).size(), 1U);
-    EXPECT_TRUE(oddities(mesh)[0].starts_with(std::to_string(body.elements()) + " elements of the mesh go clockwise"));
+    EXPECT_TRUE(oddities(mesh)[0].starts_with(std::to_string(body.elements()) +
+                                              " elements of the mesh go clockwise"));
   }
 }
 
@@ -117,18 +118,25 @@ TEST(ImportedMesh, LeavesOutTheMiddleOfNineNodesAndWhatIsInNoElement) {
   const ImportedMesh found = imported(mesh, ElementShape::q8);
   EXPECT_EQ(found.body.node, body.node);
   EXPECT_EQ(found.body.corner, body.corner);
-  EXPECT_EQ(oddities(mesh), (std::vector<std::string>{"1 nodes of the mesh belong to no element and are left out, the "
-                                                      "first at (9, 9, 0) m"}));
+  EXPECT_EQ(oddities(mesh),
+            (std::vector<std::string>{"1 nodes of the mesh belong to no element and are left out, the "
+                                      "first at (9, 9, 0) m"}));
 }
 
 TEST(ImportedMesh, KnowsPointsAndLinesOfGroups) {
   Mesh mesh = as_mesh(grid(ElementShape::h8));
   mesh.groups.push_back({0, "tip"});
   mesh.groups.push_back({1, "rim"});
-  mesh.blocks.push_back(
-      {.kind = ElementKind::point, .entity = 1, .groups = {mesh.groups.size() - 2}, .node = {5}, .number = {7}});
-  mesh.blocks.push_back(
-      {.kind = ElementKind::line, .entity = 1, .groups = {mesh.groups.size() - 1}, .node = {4, 5}, .number = {8}});
+  mesh.blocks.push_back({.kind = ElementKind::point,
+                         .entity = 1,
+                         .groups = {mesh.groups.size() - 2},
+                         .node = {5},
+                         .number = {7}});
+  mesh.blocks.push_back({.kind = ElementKind::line,
+                         .entity = 1,
+                         .groups = {mesh.groups.size() - 1},
+                         .node = {4, 5},
+                         .number = {8}});
   const ImportedMesh found = imported(mesh, ElementShape::h8);
   const MeshPart& tip = found.parts[found.parts.size() - 2];
   EXPECT_EQ(tip.name, "tip");
@@ -138,10 +146,14 @@ TEST(ImportedMesh, KnowsPointsAndLinesOfGroups) {
 
 TEST(ImportedMesh, KnowsSidesInsideTheBody) {
   Mesh mesh = as_mesh(grid(ElementShape::q4));
-  const std::uint32_t a = mesh.blocks[0].node[1], b = mesh.blocks[0].node[2];  // right side of the first element
+  const std::uint32_t a = mesh.blocks[0].node[1],
+                      b = mesh.blocks[0].node[2];  // right side of the first element
   mesh.groups.push_back({1, "seam"});
-  mesh.blocks.push_back(
-      {.kind = ElementKind::line, .entity = 9, .groups = {mesh.groups.size() - 1}, .node = {b, a}, .number = {7}});
+  mesh.blocks.push_back({.kind = ElementKind::line,
+                         .entity = 9,
+                         .groups = {mesh.groups.size() - 1},
+                         .node = {b, a},
+                         .number = {7}});
   const ImportedMesh found = imported(mesh, ElementShape::q4);
   EXPECT_TRUE(found.body.group.back().inside);
   EXPECT_FALSE(found.body.group.front().inside);
@@ -157,7 +169,8 @@ TEST(ImportedMesh, RefusesGroupsOffItsSides) {
                          .node = {mesh.blocks[0].node[0], mesh.blocks[0].node[2]},
                          .number = {77}});
   EXPECT_EQ(refusal(mesh, ElementShape::q4),
-            "m.msh, element 77: this line of the physical group \"cut\" is not the side of an element; expected lines and "
+            "m.msh, element 77: this line of the physical group \"cut\" is not the side of an element; "
+            "expected lines and "
             "faces that elements share");
   mesh = as_mesh(grid(ElementShape::q4));
   mesh.node.push_back({2, 3, 0});
@@ -168,7 +181,8 @@ TEST(ImportedMesh, RefusesGroupsOffItsSides) {
                          .node = {static_cast<std::uint32_t>(mesh.node.size() - 1)},
                          .number = {78}});
   EXPECT_EQ(refusal(mesh, ElementShape::q4),
-            "m.msh: the node at (2, 3, 0) m of the physical group \"far\" belongs to no element; expected nodes of the "
+            "m.msh: the node at (2, 3, 0) m of the physical group \"far\" belongs to no element; expected "
+            "nodes of the "
             "body");
 }
 
@@ -215,7 +229,8 @@ TEST(MeshFaults, AreNamed) {
     const Mesh mesh = as_mesh(grid(shape));
     const auto seam = nodes_at(mesh, 2.0 / 3);
     const std::string said = fault(torn_at(mesh, seam));
-    EXPECT_NE(said.find("the mesh falls into 2 parts that share no node; the least of"), std::string::npos) << said;
+    EXPECT_NE(said.find("the mesh falls into 2 parts that share no node; the least of"), std::string::npos)
+        << said;
     EXPECT_NE(said.find(std::to_string(seam.size()) + " pairs of nodes of different parts lie at one place"),
               std::string::npos)
         << said;
@@ -237,7 +252,8 @@ TEST(MeshFaults, SeeHangingNodes) {
                          .node = {0, 1, 2, 3, 1, 5, 6, 4, 4, 6, 7, 2},
                          .number = {11, 12, 13}});
   EXPECT_EQ(fault(mesh),
-            "m.msh, element 11: a node at (2, 1, 0) m hangs on a side of this quadrangle without being one of its nodes; "
+            "m.msh, element 11: a node at (2, 1, 0) m hangs on a side of this quadrangle without being one "
+            "of its nodes; "
             "expected elements that share whole sides");
   mesh.node[4] = {2.01, 1, 0};  // a gap, which is no fault of this kind
   check_conforming(mesh, "m.msh");
@@ -246,7 +262,8 @@ TEST(MeshFaults, SeeHangingNodes) {
 TEST(MeshFaults, SeeElementsThatLieOnEachOther) {
   Mesh mesh = as_mesh(grid(ElementShape::t3));
   for (int copy = 0; copy < 2; ++copy) {
-    for (int c = 0; c < 3; ++c) mesh.blocks[0].node.push_back(mesh.blocks[0].node[static_cast<std::size_t>(c)]);
+    for (int c = 0; c < 3; ++c)
+      mesh.blocks[0].node.push_back(mesh.blocks[0].node[static_cast<std::size_t>(c)]);
     mesh.blocks[0].number.push_back(500);
   }
   EXPECT_NE(fault(mesh).find("belongs to"), std::string::npos);
