@@ -45,16 +45,8 @@ std::vector<ElementLaw> element_laws(const FiniteElementsSettings& settings, int
   }
   if (sheet && settings.dilatation == Dilatation::selective)
     throw InputError(
-<<<<<<< HEAD
-        "in plane stress selective integration would take the pressure with the thickness stretch of the "
-        "centre, "
-        "and the rest with that of each point: a stress would be left across the sheet, in which nothing "
-        "locks; "
-=======
         "in plane stress selective integration would take the pressure with one thickness stretch, and the "
-        "rest "
-        "with that of each point: a stress would be left across the sheet, in which nothing locks; "
->>>>>>> meshes
+        "rest with that of each point: a stress would be left across the sheet, in which nothing locks; "
         "expected dilatation = \"full\", or none");
   if (settings.dilatation.value_or(Dilatation::full) != Dilatation::full && !any_mean)
     throw InputError(
@@ -80,12 +72,8 @@ class FiniteElements::Kernel {
   [[nodiscard]] virtual std::vector<ModelField> fields(std::span<const double> u) const = 0;
   std::vector<double> lumped;    // m^3, of each element's nodes
   std::vector<ElementLaw> laws;  // by material
-<<<<<<< HEAD
   PointMemory memory;
-  bool selective = false;  // U is taken at the centres
-=======
   Dilatation dilatation = Dilatation::full;
->>>>>>> meshes
 };
 
 template <class E>
@@ -402,7 +390,6 @@ std::size_t FiniteElements::KernelOf<E>::sweep_piece(const Piece& piece, std::sp
   return unanswered;
 }
 
-<<<<<<< HEAD
 /// Stresses and energies of an element that relaxes, whose gradients begin at `at`; keeps what its points
 /// will remember.
 template <class E>
@@ -423,12 +410,8 @@ void FiniteElements::KernelOf<E>::respond(const ElementLaw& law, std::size_t e, 
   }
 }
 
-/// Adds U'(mean of J) J F^-T to the stresses of an element, whose gradients begin at `at`, and V U to its
-/// energy.
-=======
 /// Adds what U gives to the stresses of an element, whose gradients begin at `at`, and to its energy: with
 /// the projected J, the integral of U and the projected U' times J F^-T.
->>>>>>> meshes
 template <class E>
 void FiniteElements::KernelOf<E>::add_mean(const ElementLaw& law, std::size_t e, std::size_t at,
                                            const std::array<double*, kComponents>& f,
@@ -451,12 +434,7 @@ void FiniteElements::KernelOf<E>::add_mean(const ElementLaw& law, std::size_t e,
       p[static_cast<std::size_t>(c)][at + q] += pressure[q] * g[q](c / D, c % D);
 }
 
-<<<<<<< HEAD
-/// Adds V U(J at the centre) to the energy of an element; returns the force of it, eq. (15) with the centre
-/// as the only point.
-=======
 /// Adds V U, of the J of the mean gradient, to the energy of an element; returns the force of it.
->>>>>>> meshes
 template <class E>
 typename FiniteElements::KernelOf<E>::Nodal FiniteElements::KernelOf<E>::add_selective(const ElementLaw& law,
                                                                                        std::size_t e,
@@ -529,13 +507,8 @@ typename FiniteElements::KernelOf<E>::Stiffness FiniteElements::KernelOf<E>::sti
     const double w = weight_[e * kPoints + q];
     set_slopes(slopes(e, q));
     const Tensor f = gradient(moved, e, q);
-<<<<<<< HEAD
     typename ResponseIn<D>::Tangent tangent = law.template respond<D>(f, step_of(e, q)).tangent;
-    if (law.mean && !centre) tangent += dilate(f, w);
-=======
-    typename ResponseIn<D>::Tangent tangent = law.template respond<D>(f).tangent;
     if (law.mean && !selective) tangent += pressure[q] * dilate(f, q, w);
->>>>>>> meshes
     k.noalias() += w * b.transpose() * (tangent * b).eval();
     for (int m = 0; law.mean && m < modes_; ++m)
       for (int n = 0; n < modes_; ++n) stiffer(m, n) += w * second[q] * mode(e, q, m) * mode(e, q, n);
@@ -603,13 +576,9 @@ std::vector<ModelField> FiniteElements::KernelOf<E>::fields(std::span<const doub
     const Nodal moved = nodal(u, e);
     const PerPoint j = dilatations(moved, e);
     for (std::size_t q = 0; q < kPoints; ++q) {
-<<<<<<< HEAD
       const ElementLaw& law = law_of(e);
-      const PointState state =
-          point_state<D>(law, gradient(moved, e, q), j, memory.start() + memory_of(e, q), memory.elapsed());
-=======
-      const PointState state = point_state<D>(law_of(e), gradient(moved, e, q), j[q]);
->>>>>>> meshes
+      const PointState state = point_state<D>(law, gradient(moved, e, q), j[q],
+                                              memory.start() + memory_of(e, q), memory.elapsed());
       const double mises = state.mises();
       const auto value = E::at(rule[q].at).value;
       for (int a = 0; a < N; ++a) {
@@ -640,11 +609,6 @@ FiniteElements::FiniteElements(MeshBody mesh, FiniteElementsSettings settings)
       dimension_(static_cast<std::size_t>(mesh_.dimension())) {
   check_elements(mesh_);
   std::vector<ElementLaw> laws = element_laws(settings, mesh_.dimension());
-<<<<<<< HEAD
-  with_element(mesh_.shape, [&]<class E>(E) {
-    kernel_ =
-        std::make_unique<KernelOf<E>>(mesh_, std::move(laws), settings.dilatation == Dilatation::selective);
-=======
   const bool is_q8 = mesh_.shape == ElementShape::q8;
   if (settings.dilatation == Dilatation::linear && !is_q8)
     throw InputError(
@@ -654,7 +618,6 @@ FiniteElements::FiniteElements(MeshBody mesh, FiniteElementsSettings settings)
   const Dilatation dilatation = settings.dilatation.value_or(is_q8 ? Dilatation::linear : Dilatation::mean);
   with_element(mesh_.shape, [&]<class E>(E) {
     kernel_ = std::make_unique<KernelOf<E>>(mesh_, std::move(laws), dilatation);
->>>>>>> meshes
   });
 }
 
@@ -751,13 +714,6 @@ std::vector<std::string> FiniteElements::describe() const {
                                 [](const ElementLaw& law) { return law.mean.has_value(); });
   const std::size_t points =
       with_element(mesh_.shape, []<class E>(E) { return static_cast<std::size_t>(E::Q); });
-<<<<<<< HEAD
-  return {fmt::format("mesh: {} elements {} of {} quadrature points, {} nodes, mean size {:.6g} m",
-                      mesh_.elements(), name_of(mesh_.shape), points, mesh_.node.size(), body_.spacing),
-          fmt::format("change of volume: {}", kernel_->selective ? "at the centre of each element"
-                                              : mean             ? "its mean over each element"
-                                                                 : "at every quadrature point")};
-=======
   const std::map<Dilatation, const char*> ways{
       {Dilatation::full, "at every quadrature point"},
       {Dilatation::mean, "its mean over each element"},
@@ -766,7 +722,6 @@ std::vector<std::string> FiniteElements::describe() const {
   return {fmt::format("mesh: {} elements {} of {} quadrature points, {} nodes, mean size {:.6g} m",
                       mesh_.elements(), name_of(mesh_.shape), points, mesh_.node.size(), body_.spacing),
           fmt::format("change of volume: {}", ways.at(mean ? kernel_->dilatation : Dilatation::full))};
->>>>>>> meshes
 }
 
 }  // namespace riven

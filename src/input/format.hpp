@@ -125,17 +125,10 @@ struct NamedTables {
 
 }  // namespace kind
 
-<<<<<<< HEAD
 using Kind = std::variant<kind::Text, kind::Texts, kind::Flag, kind::Integer, kind::Integers, kind::Quantity,
                           kind::Quantities, kind::AnyUnit, kind::Place, kind::Places, kind::Condition,
                           kind::Formula, kind::Components, kind::Interval, kind::Part, kind::Parts,
                           kind::Table, kind::Tables, kind::NamedTables>;
-=======
-using Kind =
-    std::variant<kind::Text, kind::Texts, kind::Integer, kind::Integers, kind::Quantity, kind::Quantities,
-                 kind::AnyUnit, kind::Place, kind::Places, kind::Condition, kind::Formula, kind::Components,
-                 kind::Interval, kind::Part, kind::Parts, kind::Table, kind::Tables, kind::NamedTables>;
->>>>>>> meshes
 
 /// A rule that holds while another key, read before, has one of some values.
 struct When {
