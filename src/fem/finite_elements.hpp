@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "fem/dilatation.hpp"
 #include "fem/mesh_body.hpp"
 #include "material/material.hpp"
 #include "material/plane.hpp"
@@ -9,13 +10,7 @@
 
 namespace riven {
 
-/// How an element's change of volume enters its energy.
-enum class Dilatation {
-  full,       // at every quadrature point: locks if nearly incompressible, except in plane stress
-  mean,       // its mean over the element: W(F) without U, and V U(mean of J), eq. (15) of the theory
-  linear,     // of eight-node quadrilaterals: a linear fit of it, and the integral of U of that
-  selective,  // of its mean gradient, of `q4` that at the centre: selective reduced integration
-};
+class ElementKernel;
 
 struct FiniteElementsSettings {
   std::vector<Material> materials;  // by their numbers in the mesh
@@ -76,14 +71,10 @@ class FiniteElements final : public Model {
   [[nodiscard]] const Body& body() const { return body_; }
 
  private:
-  class Kernel;  // of one shape of elements
-  template <class E>
-  class KernelOf;
-
   MeshBody mesh_;
   Body body_;
   std::size_t dimension_;
-  std::unique_ptr<Kernel> kernel_;
+  std::unique_ptr<ElementKernel> kernel_;
 };
 
 }  // namespace riven
