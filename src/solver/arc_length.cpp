@@ -105,7 +105,8 @@ void ArcLength::iterate() {
   const double tolerance = settings_.loads.tolerance;
   const bool rests = norm(forces_.values()) <= tolerance * std::max(scale_, forces_.scale());
   ++state_.iterations;
-  if (rests && corrections_.left() <= tolerance) return arrive();
+  const bool unloaded = !under_way() && iteration_ == 0;  // at rest where it is, but for rounding
+  if (rests && (unloaded || corrections_.left() <= tolerance)) return arrive();
   if (++iteration_ > kMostIterations)
     return retreat(
         fmt::format("not converged in {} iterations: {}", kMostIterations, forces_.unrest(tolerance)));
