@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -89,13 +88,11 @@ struct BentBar {
 TEST(Newton, OfElementsEndsWhenTheStateIsFound) {
   BentBar bar, tight;
   const State state = bar.solve(1e-10, 0.1), exact = tight.solve(3e-11, 0.5);
-  EXPECT_GT(largest(exact.u), 5);  // a quarter of its length
+  EXPECT_GT(largest(exact.u), 2);  // a tenth of its length
   EXPECT_LT(distance(state.u, exact.u), 1e-9 * largest(exact.u));
   ASSERT_GT(bar.log.residuals.size(), 5U);
-  for (const std::vector<double>& r : bar.log.residuals) {
-    EXPECT_LE(std::count_if(r.begin(), r.end(), [](double x) { return x < 1e-9; }), 2);
-    EXPECT_LE(r.size(), 5U);
-  }
+  for (const std::vector<double>& r : bar.log.residuals)
+    EXPECT_LE(r.size(), 5U);  // 4 factorisations; 5 if the last one had to be within the tolerance itself
 }
 
 /// E = sqrt(1 + z^2) with z = u[1] - 4 u[0]^2: a groove along a parabola, from whose sides Newton's whole
