@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "solver/norms.hpp"
@@ -22,6 +21,8 @@ constexpr double kLongestCorrection = 2;  // lengths of a step
 constexpr int kMostHalvings = 14;         // of the longest step
 constexpr double kDifference = 1e-5;      // of the parameter's range
 constexpr double kSameParameter = 1e-12;
+// Displacements of such a strain are next to none.
+constexpr double kLeastStrain = 1e-6;
 
 /// How the equilibria behind a point are, by the negative eigenvalues of their tangent.
 std::string stability(int negative) {
@@ -104,7 +105,8 @@ void ArcLength::iterate() {
   const double tolerance = settings_.loads.tolerance;
   const bool rests = norm(forces_.values()) <= tolerance * std::max(scale_, forces_.scale());
   ++state_.iterations;
-  if (rests && corrections_.left() <= tolerance) return arrive();
+  const bool unloaded = !under_way() && iteration_ == 0;  // at rest where it is, but for rounding
+  if (rests && (unloaded || corrections_.left() <= tolerance)) return arrive();
   if (++iteration_ > kMostIterations)
     return retreat(
         fmt::format("not converged in {} iterations: {}", kMostIterations, forces_.unrest(tolerance)));
@@ -125,7 +127,8 @@ std::optional<std::string> ArcLength::correct() {
   }
   if (!under_way()) {
     move(step.u, 0);
-    corrections_.add(norm(step.u) / (norm(state_.u) + std::numeric_limits<double>::min()));
+    const double least = kLeastStrain * model_.spacing() * std::sqrt(static_cast<double>(step.u.size()));
+    corrections_.add(norm(step.u) / (norm(state_.u) + least));
     return std::nullopt;
   }
   const double size = std::sqrt(product(step, step));

@@ -382,7 +382,9 @@ TEST(ArcLength, KeepsStillWhatNothingHolds) {
   Membrane membrane(make_lattice_body(sheet(20, 14, 0.05, Faces(0b0011))), unit_laws()[1].material(), 4);
   Constraints constraints = constrain(membrane, uniaxial());
   PathLog log;
-  const State state = follow_path(membrane, constraints, settings_of({1.5}, 0.1, 100), log);
+  ArcLengthSettings settings = settings_of({1.5}, 0.1, 100);
+  settings.loads.tolerance = 1e-6;  // below that slides by rounding count
+  const State state = follow_path(membrane, constraints, settings, log);
   double mean = 0;
   for (const std::size_t i : membrane.body().points) mean += state.u[membrane.body().size() + i];
   mean /= static_cast<double>(membrane.body().points.size());
