@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "base/nearest_name.hpp"
+#include "input/element_mesh.hpp"
 
 namespace riven {
 
@@ -185,6 +186,12 @@ void finish_elements(GeometryInput& geometry, const Check& check) {
       check.fail(key, "belongs to points with bonds; expected none: the body has elements");
   geometry.horizon = 0;  // the writer leaves out what has no value
   geometry.bonds.clear();
+  if (is_element_mesh(geometry)) {
+    const std::string found = element_name(*geometry.elements->mesh);
+    if (geometry.element != found)
+      check.fail("element", fmt::format("found \"{}\", and the mesh has {}; expected \"{}\", or nothing",
+                                        geometry.element, found, found));
+  }
   const std::vector<std::string>& fitting = geometry.dimension == 2 ? kInPlane : kInSpace;
   if (geometry.element.empty()) geometry.element = fitting.front();
   if (std::find(fitting.begin(), fitting.end(), geometry.element) == fitting.end())
@@ -198,8 +205,8 @@ void check_elements(const Case& c) {
     if (wanted)
       throw InputError(c.geometry.at,
                        "geometry: the model \"finite-elements\" needs a mesh; expected `elements` in "
-                       "the shape, such as box = { ..., elements = [20, 10] }, an arch or a "
-                       "quadrilateral");
+                       "the shape, such as box = { ..., elements = [20, 10] }, an arch, a "
+                       "quadrilateral or mesh = { ..., as = \"elements\" }");
     return;
   }
   if (!wanted)

@@ -19,6 +19,8 @@ constexpr int kMostIterations = 50;
 constexpr int kHalvings = 8;
 // Factors whose iterations leave more of the residual than this are made anew.
 constexpr double kSlow = 0.1;
+// Lengths of steps that differ by rounding are one to their factors.
+constexpr double kRounding = 1e-9;
 constexpr double kLeastMotion = 1e-4, kLeastStrain = 1e-6;  // as in slabs
 
 class GeneralisedAlpha final : public TimeStepMethod {
@@ -45,7 +47,8 @@ class GeneralisedAlpha final : public TimeStepMethod {
     for (std::size_t i = 0; i < force.size(); ++i)
       if (mass_[i] > 0) acceleration_[i] = force[i] / mass_[i];
     work_.begin(constraints_, state.parameter);
-    system_.reset();
+    system_.reset();  // bonds have left the pattern
+    frozen_at_.clear();
   }
   void accept(std::span<const double>, std::span<const double> force) override {
     start_force_.assign(force.begin(), force.end());
@@ -54,6 +57,10 @@ class GeneralisedAlpha final : public TimeStepMethod {
   }
 
   std::optional<std::string> step(const State& from, double end) override;
+  void lead_model_to(double s) override {
+    model_.go_back();
+    model_.go_on(s * h_);
+  }
   void displacement(double s, std::span<double> u) const override;
   void velocity(double s, std::span<double> v) const override;
   [[nodiscard]] double work(double s) const override { return s * step_work_; }
@@ -76,13 +83,27 @@ class GeneralisedAlpha final : public TimeStepMethod {
   static void each_member(Self& self, const Each& each) {
     each("alpha.start_force", self.start_force_);
     each("alpha.acceleration", self.acceleration_);
+    each("alpha.frozen_at", self.frozen_at_);
+    each("alpha.frozen_step", self.frozen_step_);
+    each("alpha.frozen_time", self.frozen_time_);
   }
   std::optional<Breakdown> evaluate();
   std::optional<std::string> solve();
   void constrain();
+  /// A model's memory is not saved with the factors: with one they are of their own step.
+  [[nodiscard]] bool is_frozen() const {
+    return system_ && !model_.has_memory() && std::abs(frozen_step_ - h_) <= kRounding * h_;
+  }
+  [[nodiscard]] bool freeze();
   [[nodiscard]] bool factor();
   [[nodiscard]] bool search(const std::vector<double>& direction);
   [[nodiscard]] double scale() const { return std::max(scale_, first_residual_); }
+  /// How far from balance the step is, and where most.
+  [[nodiscard]] std::string unrest() const {
+    return fmt::format("a residual of {:.2g} is left (solver.tolerance {:.2g}), the largest force at {}",
+                       residual_norm_ / scale(), tolerance_,
+                       text(model_.place(Watchdog::largest(residual_))));
+  }
   [[nodiscard]] double end_velocity(std::size_t i) const;
 
   Model& model_;
@@ -92,6 +113,8 @@ class GeneralisedAlpha final : public TimeStepMethod {
   std::vector<double> mass_;
   double alpha_m_ = 0, alpha_f_ = 0, gamma_ = 0, beta_ = 0;
   std::optional<TangentSystem> system_;
+  std::vector<double> frozen_at_;                   // state of the factors' tangent; empty: there is none
+  double frozen_step_ = 0, frozen_time_ = 0;        // s
   std::vector<double> start_force_, acceleration_;  // in the state that the step starts from
   std::vector<double> u_, v_;                       // the same
   double begin_ = 0, end_ = 0, h_ = 0;              // s
@@ -105,6 +128,7 @@ class GeneralisedAlpha final : public TimeStepMethod {
 
 std::optional<std::string> GeneralisedAlpha::step(const State& from, double end) {
   evaluations_ = iterations_ = 0;
+  if (!system_ && !frozen_at_.empty()) static_cast<void>(factor());  // as before, after a run was resumed
   u_ = from.u;
   v_ = from.v;
   begin_ = from.parameter;
@@ -148,6 +172,7 @@ std::optional<Breakdown> GeneralisedAlpha::evaluate() {
     if (mass_[i] == 0) end_acceleration_[i] = 0;
   }
   std::fill(force_.begin(), force_.end(), 0.0);  // models leave out points without bonds
+  lead_model_to(1);
   if (auto breakdown = model_.internal_force(state_, force_)) return breakdown;
   std::fill(applied_.begin(), applied_.end(), 0.0);
   if (!external_.empty()) {
@@ -174,11 +199,11 @@ std::optional<std::string> GeneralisedAlpha::solve() {
   first_residual_ = residual_norm_;
   const double least = kLeastStrain * model_.spacing() * std::sqrt(static_cast<double>(model_.dofs()));
   std::vector<double> direction(u_.size());
-  bool stale = true;
+  bool stale = !is_frozen();
   for (int n = 0; n < kMostIterations; ++n) {
     ++iterations_;
     const bool fresh = stale;
-    if (stale && !factor()) return "the tangent of the step is not positive definite";
+    if (stale && !freeze()) return "the tangent of the step is not positive definite";
     stale = false;
     system_->solve(residual_, direction);
     for (double& entry : direction) entry /= 1 - alpha_f_;
@@ -187,23 +212,33 @@ std::optional<std::string> GeneralisedAlpha::solve() {
       return std::nullopt;
     const double before = residual_norm_;
     const bool moved = search(direction);
-    if (!moved && fresh)
-      return fmt::format("no way down from a residual of {:.2g} (solver.tolerance {:.2g})",
-                         residual_norm_ / scale(), tolerance_);
+    if (!moved && fresh) return "no way down: " + unrest();
     stale = !moved || (residual_norm_ > kSlow * before && residual_norm_ > tolerance_ * scale());
   }
-  return fmt::format("not converged in {} iterations, a residual of {:.2g} is left (solver.tolerance {:.2g})",
-                     kMostIterations, residual_norm_ / scale(), tolerance_);
+  return fmt::format("not converged in {} iterations: {}", kMostIterations, unrest());
+}
+
+/// New factors, for the state that the iterations have come to. They serve until they are slow.
+bool GeneralisedAlpha::freeze() {
+  frozen_at_.resize(u_.size());
+  for (std::size_t i = 0; i < u_.size(); ++i) frozen_at_[i] = u_[i] + z_[i];
+  frozen_time_ = end_;
+  frozen_step_ = h_;
+  ++evaluations_;
+  lead_model_to(1);
+  if (factor()) return true;
+  system_.reset();
+  frozen_at_.clear();
+  return false;
 }
 
 bool GeneralisedAlpha::factor() {
-  std::vector<double> force(u_.size());
-  for (std::size_t i = 0; i < u_.size(); ++i) state_[i] = u_[i] + z_[i];
-  ++evaluations_;
-  static_cast<void>(model_.internal_force(state_, force));  // as before: it was evaluated
-  if (!system_) system_.emplace(model_, constraints_, state_, mass_);
-  system_->assemble(state_, external_, end_);
-  return system_->factor((1 - alpha_m_) / ((1 - alpha_f_) * beta_ * h_ * h_), mass_);
+  std::vector<double> force(frozen_at_.size());
+  static_cast<void>(model_.internal_force(frozen_at_, force));  // as before: it was evaluated
+  if (!system_) system_.emplace(model_, constraints_, frozen_at_, mass_);
+  system_->assemble(frozen_at_, external_, frozen_time_);
+  const double h = frozen_step_;
+  return system_->factor((1 - alpha_m_) / ((1 - alpha_f_) * beta_ * h * h), mass_);
 }
 
 /// Goes along a direction, all of it or a part that lessens the residual. If none does, everything stays.

@@ -215,6 +215,7 @@ class Verlet {
     ++state_.steps;
     constraints_.set_parameter(time);
     constraints_.apply(state_.u);
+    model_.go_on(dt);
     evaluate();
     kick(0.5 * dt, 0);
     damp(0.5 * dt);

@@ -116,6 +116,64 @@ TEST(GeneralisedAlpha, BalancesTheEnergyToItsOrder) {
   EXPECT_GT(std::log2(coarse / fine), 1.6);
 }
 
+/// Counts how often its tangent is asked for: twice for the pattern, then for each factorisation.
+struct CountingChain : SpringChain {
+  using SpringChain::SpringChain;
+  void tangent(std::span<const double> u, std::size_t first, std::size_t last,
+               TangentBlocks& to) const override {
+    if (first == 0) ++tangents;
+    SpringChain::tangent(u, first, last, to);
+  }
+  mutable long tangents = 0;
+};
+
+// Times of 0.07 n differ by 0.07 but for rounding.
+TEST(GeneralisedAlpha, FactorsALinearMotionOnce) {
+  CountingChain model({1.0}, linear_spring(1), true);
+  Constraints constraints(1, 0);
+  GeneralisedAlphaSettings settings = settings_for(0.8, 0.07, 100);
+  settings.tolerance = 1e-8;
+  settings.initial_u = {1.0};
+  Observer nobody;
+  static_cast<void>(generalised_alpha(model, constraints, settings, nobody));
+  EXPECT_EQ(model.tangents, 2 + 1);
+}
+
+// Factors of an earlier step leave other roundings than new ones would.
+TEST(GeneralisedAlpha, GoesOnWithTheFactorsItHad) {
+  struct Stopped {};
+  struct Watch : Observer {
+    void safe_point(const std::function<Snapshot()>& take) override {
+      if (++steps != stop_at) return;
+      snapshot = take();
+      throw Stopped();
+    }
+    long stop_at = 0, steps = 0;
+    Snapshot snapshot;
+  };
+  const auto run = [](Watch& watch, const Snapshot* from) {
+    CountingChain model({1, 2, 1, 0.5, 1}, neo_hookean_spring(10), true);
+    Constraints constraints(5, 1);
+    GeneralisedAlphaSettings settings = settings_for(0.8, 0.02, 60);
+    settings.tolerance = 1e-6;
+    settings.initial_v = {0, 0.3, 1, 0.5, 0};
+    const State state = generalised_alpha(model, constraints, settings, watch, from);
+    return std::pair(state, model.tangents);
+  };
+  Watch whole;
+  const auto [expected, tangents] = run(whole, nullptr);
+  EXPECT_LT(tangents, 30);  // of 60 steps
+  for (const long stop : {1L, 7L, 29L, 30L, 58L}) {
+    Watch first, second;
+    first.stop_at = stop;
+    EXPECT_THROW(static_cast<void>(run(first, nullptr)), Stopped);
+    const State state = run(second, &first.snapshot).first;
+    EXPECT_EQ(state.u, expected.u) << stop;
+    EXPECT_EQ(state.v, expected.v) << stop;
+    EXPECT_EQ(state.evaluations, expected.evaluations) << stop;
+  }
+}
+
 TEST(GeneralisedAlpha, NeedsAStep) {
   GeneralisedAlphaSettings settings = settings_for(1, 0.1, 1);
   settings.step.reset();
