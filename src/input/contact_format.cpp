@@ -112,6 +112,10 @@ void check_kind(const ImpactorInput& impactor, const Case& c, const Check& check
                "expected velocity or displacement only");
   if (impactor.flat && c.geometry.dimension != 2)
     check.fail("flat", "belongs to two dimensions; expected a plane or a sphere");
+  if (c.solver.control == "arc-length")
+    throw InputError(impactor.at, fmt::format("impactor {}: a body has no path of equilibria before it is "
+                                              "touched; expected control = \"load\"",
+                                              impactor.name));
   if (!impactor.velocity.empty() && !c.solver.in_time())
     check.fail("velocity", "needs motion in time; expected displacement, a formula of stretch");
 }

@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include "simulation/build_parts.hpp"
 #include "simulation/way.hpp"
@@ -41,16 +43,35 @@ Vector3d outward(const Side& side, const MeshBody& mesh) {
   return Vector3d(along.y(), -along.x(), 0).normalized();
 }
 
+/// Sides that belong to one element.
+std::vector<Side> outer_sides(const MeshBody& mesh) {
+  return with_element(mesh.shape, [&]<class E>(E) {
+    std::map<std::vector<std::uint32_t>, std::optional<Side>> found;  // nothing: of two
+    for (std::size_t e = 0; e < mesh.elements(); ++e)
+      for (const auto& corners : E::sides) {
+        Side side;
+        for (const int a : corners) side.node.push_back(mesh.nodes(e)[static_cast<std::size_t>(a)]);
+        std::vector<std::uint32_t> key = side.node;
+        std::sort(key.begin(), key.end());
+        const auto [at, is_new] = found.emplace(std::move(key), std::move(side));
+        if (!is_new) at->second.reset();
+      }
+    std::vector<Side> outer;
+    for (auto& [key, side] : found)
+      if (side) outer.push_back(std::move(*side));
+    return outer;
+  });
+}
+
 /// Nodes of the sides that an indenter may push, with their areas.
 std::vector<LoadShare> surface_of(const ImpactorInput& in, const MeshBody& mesh) {
   MeshBody facing{
       .shape = mesh.shape, .thickness = mesh.thickness, .node = mesh.node, .corner = {}, .material = {}};
-  for (const std::vector<Side>& face : mesh.face)
-    for (const Side& side : face) {
-      const Vector3d middle =
-          0.5 * (Vector3d(mesh.node[side.node[0]].data()) + Vector3d(mesh.node[side.node[1]].data()));
-      if (outward(side, mesh).dot(towards(in, middle)) > kFacing) facing.face[0].push_back(side);
-    }
+  for (const Side& side : outer_sides(mesh)) {
+    const Vector3d middle =
+        0.5 * (Vector3d(mesh.node[side.node[0]].data()) + Vector3d(mesh.node[side.node[1]].data()));
+    if (outward(side, mesh).dot(towards(in, middle)) > kFacing) facing.face[0].push_back(side);
+  }
   std::vector<LoadShare> surface;
   for (const NodeShare& share : facing.face_shares(0))
     surface.push_back({share.node, mesh.node[share.node], share.extent});

@@ -86,6 +86,7 @@ MISTAKES = [
     ("a punch that is elsewhere at the start", PUNCH, "(1 - stretch)", "(2 - stretch)", "[[impactor]]", "at stretch 1 already"),
     ("a punch that moves both ways", PUNCH, "displacement = [0, \"(1", "velocity = [0, 0]\ndisplacement = [0, \"(1", "displacement", "velocity, displacement"),
     ("a punch of a speed in statics", PUNCH, 'displacement = [0, "(1 - stretch) * 10 mm"]', 'velocity = [0, "1 m/s"]', "velocity", "needs motion in time"),
+    ("a punch along a path", PUNCH, 'method = "dynamic-relaxation"', 'method = "newton"\ncontrol = "arc-length"', "[[impactor]]", 'expected control = "load"'),
     ("a punch that is free in part", PUNCH, '[0, "(1 - stretch) * 10 mm"]', '["free", 0]', "displacement = [", 'has an entry "free"'),
     ("a punch with mass", PUNCH, 'name = "punch"', 'name = "punch"\nmass = "1 kg"', "mass", "belongs to peridynamic models"),
     ("an impactor of points that sticks", IMPACT, 'mass = "20 g"', 'mass = "20 g"\nsurface = "sticking"', "surface", 'belongs to the model "finite-elements"'),
