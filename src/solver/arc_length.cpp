@@ -71,6 +71,7 @@ Snapshot ArcLength::save() const {
   work_.save(to);
   constraints_.save(to);
   model_.save(to);
+  for (const auto& external : settings_.loads.external) external->save(to);
   return to;
 }
 
@@ -79,6 +80,7 @@ void ArcLength::restore(const Snapshot& from) {
   work_.restore(from);
   constraints_.restore(from);
   model_.restore(from);
+  for (const auto& external : settings_.loads.external) external->restore(from);
 }
 
 /// A length ahead on the path; the first step finds the equilibrium that it starts from.
@@ -224,6 +226,7 @@ void ArcLength::set_out(Direction first) {
   negative_ = tangent_.negative();
   scale_ = forces_.scale();
   work_.begin(constraints_, 0);
+  for (const auto& external : settings_.loads.external) external->advance(state_.u, next_);
   EnergyBalance& energy = state_.energy;
   energy.strain = model_.strain_energy(state_.u);
   for (const auto& external : settings_.loads.external) energy.held += external->held(state_.u, next_);
@@ -237,6 +240,7 @@ void ArcLength::accept(Direction next, double length) {
   direction_ = std::move(next);
   scale_ = std::max(scale_, forces_.scale());
   state_.parameter = next_;
+  for (const auto& external : settings_.loads.external) external->advance(state_.u, next_);
   ++state_.steps;
   const double target = settings_.loads.targets[target_];
   const bool there = std::abs(next_ - target) <= kSameParameter * std::abs(target);
