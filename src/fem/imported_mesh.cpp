@@ -129,7 +129,6 @@ class Importer {
   void make_faces(const std::array<bool, 6>& faces) {
     const Box box = box_around(mesh_);
     for (const SideOfElement& at : sides_) {
-      if (with_key(at.key).size() > 1) continue;
       Side side = side_at(at);
       for (std::size_t face = 0; face < 2 * static_cast<std::size_t>(imported_.body.dimension()); ++face) {
         const std::size_t axis = face / 2;

@@ -324,9 +324,13 @@ on = "right"
                       self.refused("run", self.write("typo.toml", text.replace('on = "right"\ntraction', 'on = "rihgt"\ntraction'))))
         self.assertIn('found "q8", and the mesh has q4; expected "q4", or nothing',
                       self.refused("run", self.write("kind.toml", text.replace(MESH, MESH + '\nelement = "q8"'))))
-        self.assertIn("needs a mesh; expected", self.refused("run", self.write("points.toml", text.replace(', as = "elements"', "") + "")))
         self.assertIn('"panel" is a set, and a pressure acts on an edge', self.refused("run", self.write("set.toml", text.replace(
             'on = "right"\ntraction = [0, "6.25 MPa * (stretch - 1)"]', 'on = "panel"\npressure = "1 MPa"'))))
+
+    def test_a_mesh_of_points_is_none_of_elements(self):
+        cook("q4", groups=False, place=lambda x, y: (48 * x, 20 * y)).write(self.top / "cook.msh")
+        text = replaced(COOK.replace("GEOMETRY", MESH), ', as = "elements"', "").replace('at = ["48 mm", "60 mm"]', 'at = ["48 mm", "20 mm"]')
+        self.assertIn('mesh = { ..., as = "elements" }', self.refused("run", self.write("points.toml", text)))
 
 
 if __name__ == "__main__":

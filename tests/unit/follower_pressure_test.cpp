@@ -209,6 +209,17 @@ TEST(FollowerPressure, PressesIntoTheBody) {
       const Point total = load.total(rest, 2);
       for (std::size_t d = 0; d < 3; ++d) EXPECT_NEAR(total[d], expected[d], 1e-14);
     }
+    // 1 + 6 y on the right face, with the shape functions as weights: 4 in the mean, moment of the y 1/2 + 2.
+    FollowerPressure load = pressure_on(mesh, {1}, [](const Point& x, double) { return 1 + 6 * x[1]; });
+    const VectorXd force = force_of(load, rest);
+    double sum = 0, moment = 0;
+    for (std::size_t n = 0; n < mesh.node.size(); ++n) {
+      sum += force(static_cast<Eigen::Index>(n));
+      moment += mesh.node[n][1] * force(static_cast<Eigen::Index>(n));
+    }
+    const double across = mesh.dimension() == 2 ? 0.5 : 1;
+    EXPECT_NEAR(sum, -4 * across, 1e-13) << name_of(shape);
+    EXPECT_NEAR(moment, -2.5 * across, 1e-13) << name_of(shape);
   }
 }
 
