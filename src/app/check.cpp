@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "app/commands.hpp"
@@ -71,14 +72,31 @@ void print_sets(const Simulation& simulation) {
     }
     fmt::print("# set {}: {} points, x {:g} to {:g} m, y {:g} to {:g} m\n", set.name, set.points.size(),
                lower[0], upper[0], lower[1], upper[1]);
-    print_shapes(simulation.input.sets[n], set, simulation);
+    if (n < simulation.input.sets.size()) print_shapes(simulation.input.sets[n], set, simulation);
   }
+}
+
+/// Physical groups of a mesh that are edges.
+void print_edges(const Simulation& simulation) {
+  for (std::size_t edge = kFaceNames.size(); edge < simulation.edges(); ++edge)
+    fmt::print("# edge {}: {} sides, {:.6g} m^2\n", simulation.mesh->group[edge - kFaceNames.size()].name,
+               simulation.mesh->sides(edge).size(), simulation.mesh->face_area(edge));
 }
 
 std::string range(const TableFunction::Column& column) {
   const auto [least, most] = std::minmax_element(column.values.begin(), column.values.end());
   const std::string span = fmt::format("{} {:g} to {:g}", without_unit(column.name), *least, *most);
   return column.dimension == dimension::none ? span : fmt::format("{} {}", span, si_unit(column.dimension));
+}
+
+void print_indenters(const Simulation& simulation) {
+  constexpr std::array kShapes{"sphere", "plane", "flat"};
+  for (const auto& indenter : simulation.indenters) {
+    const IndenterSettings& settings = indenter->settings();
+    fmt::print("# impactor {}: {}, {}, {} nodes face it, {:.4g} N/m^3\n", settings.name,
+               kShapes[settings.shape.index()], settings.sticking ? "sticking" : "frictionless",
+               indenter->surface().size(), settings.stiffness);
+  }
 }
 
 void print_initial(const char* what, const char* unit, const std::vector<double>& state,
@@ -120,11 +138,12 @@ void print_forces(const Simulation& simulation) {
     return fmt::format("({:.6g}) N",
                        fmt::join(force.begin(), force.begin() + simulation.body->dimension, ", "));
   };
+  const std::vector<double> rest(simulation.model->dofs(), 0.0);
   for (const AppliedForce& applied : simulation.applied)
-    fmt::print("# {} on {}: {} in all at the start, {} at the end\n",
-               applied.face ? "traction" : "body force", applied.on.empty() ? "the body" : applied.on,
-               text(applied.force->total(in_time ? 0 : 1)),
-               text(applied.force->total(in_time ? solver.until : solver.stretch.back())));
+    fmt::print("# {} on {}: {} in all at the start, {} at the end{}\n", applied.kind(),
+               applied.on.empty() ? "the body" : applied.on, text(applied.total(rest, in_time ? 0 : 1)),
+               text(applied.total(rest, in_time ? solver.until : solver.stretch.back())),
+               applied.pressure ? " if the body did not deform" : "");
 }
 
 std::string extent_text(const Body& body) {
@@ -166,8 +185,10 @@ void print_model(const Simulation& simulation) {
   for (const MaterialInput& in : simulation.input.materials)
     if (is_complete(in)) fmt::print("# material {}: {}\n", in.name, moduli_text(make_material(in)));
   for (const std::string& line : model.describe()) fmt::print("# {}\n", line);
+  print_edges(simulation);
   print_sets(simulation);
   print_forces(simulation);
+  print_indenters(simulation);
   print_initial("displacement", "m", simulation.initial_u, simulation);
   print_initial("velocity", "m/s", simulation.initial_v, simulation);
 }
@@ -175,8 +196,8 @@ void print_model(const Simulation& simulation) {
 void print_cost(const Simulation& simulation) {
   if (simulation.parameter == Parameter::time) {
     const std::vector<double> rest(simulation.model->dofs(), 0.0);
-    fmt::print("# stable step: {:.4g} s at rest\n",
-               stable_step(*simulation.model, *simulation.constraints, rest));
+    fmt::print("# stable step of explicit methods: {:.4g} s at rest\n",
+               stable_step(*simulation.model, *simulation.constraints, rest, simulation.external));
   }
   const TimeEstimate time = time_estimate(simulation);
   fmt::print("# time: about {} on {} ({:.3g} {} of {:.2g} ms)\n", duration_text(time.total_s()),

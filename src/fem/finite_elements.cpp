@@ -2,19 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
+#include <map>
 
 #include "base/error.hpp"
-#include "base/parallel.hpp"
-#include "fem/element_law.hpp"
+#include "fem/element_kernel.hpp"
 
 namespace riven {
 
 namespace {
-
-constexpr std::size_t kPiece = 8;  // elements whose gradients are answered at once
 
 Kinematics kinematics_of(int dimension, Plane plane) {
   if (dimension == 3) return Kinematics::solid;
@@ -32,11 +28,21 @@ std::vector<ElementLaw> element_laws(const FiniteElementsSettings& settings, int
           fmt::format("material {} is incompressible, and its pressure does not follow from the "
                       "deformation; expected a bulk_modulus, or plane stress",
                       material.name));
+    if (!material.relaxation.empty() && !has_isochoric_part(material))
+      throw InputError(fmt::format(
+          "material {} relaxes, but its law has no part of the shape alone that could; expected one with a "
+          "bulk_modulus of its own, such as \"neo-hookean\"",
+          material.name));
     const bool mean = material.volumetric && !sheet && settings.dilatation != Dilatation::full;
     any_mean = any_mean || mean;
     laws.emplace_back(material, kinematics, mean);
   }
-  if (settings.dilatation == Dilatation::mean && !any_mean)
+  if (sheet && settings.dilatation == Dilatation::selective)
+    throw InputError(
+        "in plane stress selective integration would take the pressure with one thickness stretch, and the "
+        "rest with that of each point: a stress would be left across the sheet, in which nothing locks; "
+        "expected dilatation = \"full\", or none");
+  if (settings.dilatation.value_or(Dilatation::full) != Dilatation::full && !any_mean)
     throw InputError(
         sheet ? "in plane stress nothing locks; expected dilatation = \"full\", or none"
               : "no material has a bulk_modulus, so that none has a part of its energy that is of the "
@@ -46,388 +52,20 @@ std::vector<ElementLaw> element_laws(const FiniteElementsSettings& settings, int
 
 }  // namespace
 
-/// What depends on the shape of the elements, behind one virtual call per sweep.
-class FiniteElements::Kernel {
- public:
-  virtual ~Kernel() = default;
-  /// Returns the first element that the law says nothing of.
-  virtual std::optional<std::size_t> force(std::span<const double> u, std::span<double> force) = 0;
-  [[nodiscard]] virtual double energy(std::span<const double> u) = 0;
-  virtual void tangent(std::span<const double> u, std::size_t first, std::size_t last,
-                       TangentBlocks& to) const = 0;
-  virtual void bound(std::span<const double> u, std::span<double> bound) = 0;
-  [[nodiscard]] virtual std::optional<std::size_t> turned_over(std::span<const double> u) const = 0;
-  [[nodiscard]] virtual std::vector<ModelField> fields(std::span<const double> u) const = 0;
-  std::vector<double> lumped;    // m^3, of each element's nodes
-  std::vector<ElementLaw> laws;  // by material
-};
-
-template <class E>
-class FiniteElements::KernelOf final : public Kernel {
- public:
-  static constexpr int D = E::D, N = E::N, Q = E::Q, kDofs = D * N;
-  static constexpr std::size_t kNodes = N, kPoints = Q, kComponents = D * D;
-  using Tensor = Eigen::Matrix<double, D, D>;
-  using Nodal = Eigen::Matrix<double, N, D>;
-  using Stiffness = Eigen::Matrix<double, kDofs, kDofs>;
-  using Slopes = Eigen::Map<const Nodal>;
-
-  KernelOf(const MeshBody& mesh, std::vector<ElementLaw> element_laws) : mesh_(mesh) {
-    laws = std::move(element_laws);
-    lumped = mesh.lumped_volumes();
-    make_slopes();
-    make_pieces();
-    make_gather();
-    element_force_.resize(mesh.corner.size() * D);
-    element_energy_.resize(mesh.elements());
-  }
-
-  std::optional<std::size_t> force(std::span<const double> u, std::span<double> force) override {
-    const std::optional<std::size_t> wrong = sweep(u);
-    if (wrong) return wrong;
-    gather(force, -1);
-    return std::nullopt;
-  }
-
-  double energy(std::span<const double> u) override {
-    if (sweep(u)) return std::numeric_limits<double>::quiet_NaN();
-    return ordered_sum_of(element_energy_.size(), [&](std::size_t e) { return element_energy_[e]; });
-  }
-
-  void tangent(std::span<const double> u, std::size_t first, std::size_t last,
-               TangentBlocks& to) const override {
-    for (std::size_t e = first; e < last; ++e) {
-      const Stiffness k = stiffness(u, e);
-      for (int r = 0; r < kDofs; ++r) to.dofs.push_back(entry(e, r));
-      to.begin.push_back(to.dofs.size());
-      to.values.insert(to.values.end(), k.data(), k.data() + k.size());
-    }
-  }
-
-  /// Row sums of the elements' own matrices: no less than those of their sum.
-  void bound(std::span<const double> u, std::span<double> bound) override {
-    parallel_for(static_cast<std::ptrdiff_t>(mesh_.elements()), [&](std::ptrdiff_t n) {
-      const auto e = static_cast<std::size_t>(n);
-      const Eigen::Matrix<double, kDofs, 1> rows = stiffness(u, e).cwiseAbs().rowwise().sum();
-      std::copy_n(rows.data(), kDofs, element_force_.data() + e * kNodes * D);
-    });
-    gather(bound, 1);
-  }
-
-  std::optional<std::size_t> turned_over(std::span<const double> u) const override {
-    for (std::size_t e = 0; e < mesh_.elements(); ++e) {
-      const Nodal moved = nodal(u, e);
-      for (std::size_t q = 0; q < kPoints; ++q)
-        if (!(gradient(moved, e, q).determinant() > 0)) return e;
-    }
-    return std::nullopt;
-  }
-
-  std::vector<ModelField> fields(std::span<const double> u) const override;
-
- private:
-  struct Piece {
-    std::size_t begin = 0, end = 0;  // of `order_`
-    std::size_t material = 0;
-  };
-
-  [[nodiscard]] std::size_t entry(std::size_t e, int dof) const {
-    return static_cast<std::size_t>(dof % D) * mesh_.node.size() +
-           mesh_.nodes(e)[static_cast<std::size_t>(dof / D)];
-  }
-  [[nodiscard]] Nodal nodal(std::span<const double> u, std::size_t e) const {
-    Nodal v;
-    const auto nodes = mesh_.nodes(e);
-    for (int a = 0; a < N; ++a)
-      for (int d = 0; d < D; ++d)
-        v(a, d) = u[static_cast<std::size_t>(d) * mesh_.node.size() + nodes[static_cast<std::size_t>(a)]];
-    return v;
-  }
-  /// Slopes of the shape functions along x, y, z (1/m).
-  [[nodiscard]] Slopes slopes(std::size_t e, std::size_t q) const {
-    return Slopes(slope_.data() + (e * kPoints + q) * kNodes * D);
-  }
-  [[nodiscard]] Tensor gradient(const Nodal& moved, std::size_t e, std::size_t q) const {
-    return Tensor::Identity() + moved.transpose() * slopes(e, q);
-  }
-  [[nodiscard]] const ElementLaw& law_of(std::size_t e) const { return laws[mesh_.material_of(e)]; }
-
-  void make_slopes();
-  void make_pieces();
-  void make_gather();
-  std::optional<std::size_t> sweep(std::span<const double> u);
-  [[nodiscard]] std::size_t sweep_piece(const Piece& piece, std::span<const double> u);
-  void add_mean(const ElementLaw& law, std::size_t e, std::size_t at,
-                const std::array<double*, kComponents>& f, const std::array<double*, kComponents>& p);
-  void gather(std::span<double> to, double sign) const;
-  [[nodiscard]] Stiffness stiffness(std::span<const double> u, std::size_t e) const;
-  [[nodiscard]] double mean_dilatation(const Nodal& moved, std::size_t e) const;
-
-  const MeshBody& mesh_;
-  std::vector<double> slope_;       // of element, quadrature point, direction, node (1/m)
-  std::vector<double> weight_;      // of element, quadrature point (m^3)
-  std::vector<double> volume_;      // of elements (m^3)
-  std::vector<std::size_t> order_;  // elements by material
-  std::vector<Piece> pieces_;
-  std::vector<std::size_t> first_;      // of each node, in `slot_`
-  std::vector<std::size_t> slot_;       // element times nodes plus node of the element
-  std::vector<double> element_force_;   // of element, node, direction (N)
-  std::vector<double> element_energy_;  // J
-};
-
-template <class E>
-void FiniteElements::KernelOf<E>::make_slopes() {
-  const auto rule = E::rule();
-  for (std::size_t e = 0; e < mesh_.elements(); ++e) {
-    Nodal x;
-    for (int a = 0; a < N; ++a)
-      for (int d = 0; d < D; ++d)
-        x(a, d) = mesh_.node[mesh_.nodes(e)[static_cast<std::size_t>(a)]][static_cast<std::size_t>(d)];
-    volume_.push_back(0);
-    for (const auto& point : rule) {
-      const auto f = E::at(point.at);
-      const Tensor jacobian = x.transpose() * f.slope;
-      const Nodal slope = f.slope * jacobian.inverse();
-      slope_.insert(slope_.end(), slope.data(), slope.data() + slope.size());
-      weight_.push_back(point.weight * jacobian.determinant() * (D == 2 ? mesh_.thickness : 1));
-      volume_.back() += weight_.back();
-    }
-  }
-}
-
-template <class E>
-void FiniteElements::KernelOf<E>::make_pieces() {
-  for (std::size_t m = 0; m < laws.size(); ++m) {
-    const std::size_t begin = order_.size();
-    for (std::size_t e = 0; e < mesh_.elements(); ++e)
-      if (mesh_.material_of(e) == m) order_.push_back(e);
-    for (std::size_t at = begin; at < order_.size(); at += kPiece)
-      pieces_.push_back({at, std::min(at + kPiece, order_.size()), m});
-  }
-}
-
-template <class E>
-void FiniteElements::KernelOf<E>::make_gather() {
-  first_.assign(mesh_.node.size() + 1, 0);
-  for (const std::uint32_t node : mesh_.corner) ++first_[node + 1];
-  for (std::size_t n = 0; n + 1 < first_.size(); ++n) first_[n + 1] += first_[n];
-  slot_.resize(mesh_.corner.size());
-  std::vector<std::size_t> next = first_;
-  for (std::size_t s = 0; s < slot_.size(); ++s) slot_[next[mesh_.corner[s]]++] = s;
-}
-
-template <class E>
-void FiniteElements::KernelOf<E>::gather(std::span<double> to, double sign) const {
-  const std::size_t nodes = mesh_.node.size();
-  parallel_for(static_cast<std::ptrdiff_t>(nodes), [&](std::ptrdiff_t i) {
-    const auto n = static_cast<std::size_t>(i);
-    std::array<double, D> sum{};
-    for (std::size_t s = first_[n]; s < first_[n + 1]; ++s)
-      for (std::size_t d = 0; d < D; ++d) sum[d] += element_force_[slot_[s] * D + d];
-    for (std::size_t d = 0; d < D; ++d) to[d * nodes + n] = sign * sum[d];
-  });
-}
-
-/// Forces and energies of all elements; the first one that the law says nothing of.
-template <class E>
-std::optional<std::size_t> FiniteElements::KernelOf<E>::sweep(std::span<const double> u) {
-  std::vector<std::size_t> wrong(pieces_.size());
-  parallel_for(static_cast<std::ptrdiff_t>(pieces_.size()), [&](std::ptrdiff_t n) {
-    const auto p = static_cast<std::size_t>(n);
-    wrong[p] = sweep_piece(pieces_[p], u);
-  });
-  if (std::all_of(wrong.begin(), wrong.end(), [](std::size_t n) { return n == 0; })) return std::nullopt;
-  for (std::size_t e = 0; e < mesh_.elements(); ++e)
-    if (!std::isfinite(element_energy_[e])) return e;
-  return std::nullopt;
-}
-
-/// Returns how many gradients the law says nothing of.
-template <class E>
-std::size_t FiniteElements::KernelOf<E>::sweep_piece(const Piece& piece, std::span<const double> u) {
-  std::array<double, kComponents * kPiece * kPoints> f_of, p_of;
-  std::array<double, kPiece * kPoints> energy;
-  std::array<double*, kComponents> f, p;
-  for (std::size_t c = 0; c < kComponents; ++c) {
-    f[c] = f_of.data() + c * kPiece * kPoints;
-    p[c] = p_of.data() + c * kPiece * kPoints;
-  }
-  const std::size_t count = (piece.end - piece.begin) * kPoints;
-  for (std::size_t n = piece.begin, at = 0; n < piece.end; ++n) {
-    const Nodal moved = nodal(u, order_[n]);
-    for (std::size_t q = 0; q < kPoints; ++q, ++at) {
-      const Tensor gradient_here = gradient(moved, order_[n], q);
-      for (int r = 0; r < D; ++r)
-        for (int s = 0; s < D; ++s) f[static_cast<std::size_t>(D * r + s)][at] = gradient_here(r, s);
-    }
-  }
-  const ElementLaw& law = laws[piece.material];
-  const std::size_t unanswered = law.local.stress(law.kinematics, count, f.data(), p.data(), energy.data());
-  for (std::size_t n = piece.begin, at = 0; n < piece.end; ++n, at += kPoints) {
-    const std::size_t e = order_[n];
-    element_energy_[e] = 0;
-    for (std::size_t q = 0; q < kPoints; ++q) element_energy_[e] += weight_[e * kPoints + q] * energy[at + q];
-    if (law.mean) add_mean(law, e, at, f, p);
-    Nodal force = Nodal::Zero();
-    for (std::size_t q = 0; q < kPoints; ++q) {
-      Tensor stress;
-      for (int c = 0; c < D * D; ++c) stress(c / D, c % D) = p[static_cast<std::size_t>(c)][at + q];
-      force += weight_[e * kPoints + q] * slopes(e, q) * stress.transpose();
-    }
-    for (int a = 0; a < N; ++a)
-      for (int d = 0; d < D; ++d)
-        element_force_[(e * kNodes + static_cast<std::size_t>(a)) * D + static_cast<std::size_t>(d)] =
-            force(a, d);
-  }
-  return unanswered;
-}
-
-/// Adds U'(mean of J) J F^-T to the stresses of an element, whose gradients begin at `at`, and V U to its
-/// energy.
-template <class E>
-void FiniteElements::KernelOf<E>::add_mean(const ElementLaw& law, std::size_t e, std::size_t at,
-                                           const std::array<double*, kComponents>& f,
-                                           const std::array<double*, kComponents>& p) {
-  std::array<Tensor, kPoints> g;
-  double j = 0;
-  for (std::size_t q = 0; q < kPoints; ++q) {
-    Tensor here;
-    for (int c = 0; c < D * D; ++c) here(c / D, c % D) = f[static_cast<std::size_t>(c)][at + q];
-    g[q] = cofactor<D>(here);
-    j += weight_[e * kPoints + q] * here.determinant() / volume_[e];
-  }
-  double first = 0, second = 0;
-  element_energy_[e] += volume_[e] * volume_energy(*law.mean, j, first, second);
-  for (std::size_t q = 0; q < kPoints; ++q)
-    for (int c = 0; c < D * D; ++c) p[static_cast<std::size_t>(c)][at + q] += first * g[q](c / D, c % D);
-}
-
-template <class E>
-double FiniteElements::KernelOf<E>::mean_dilatation(const Nodal& moved, std::size_t e) const {
-  double j = 0;
-  for (std::size_t q = 0; q < kPoints; ++q)
-    j += weight_[e * kPoints + q] * gradient(moved, e, q).determinant() / volume_[e];
-  return j;
-}
-
-/// Rows and columns: nodes, and within them directions.
-template <class E>
-typename FiniteElements::KernelOf<E>::Stiffness FiniteElements::KernelOf<E>::stiffness(
-    std::span<const double> u, std::size_t e) const {
-  const ElementLaw& law = law_of(e);
-  const Nodal moved = nodal(u, e);
-  double first = 0, second = 0;
-  if (law.mean) volume_energy(*law.mean, mean_dilatation(moved, e), first, second);
-  Stiffness k = Stiffness::Zero();
-  Eigen::Matrix<double, kDofs, 1> sum = Eigen::Matrix<double, kDofs, 1>::Zero();  // q of eq. (16)
-  Eigen::Matrix<double, D * D, kDofs> b = Eigen::Matrix<double, D * D, kDofs>::Zero();
-  for (std::size_t q = 0; q < kPoints; ++q) {
-    const double w = weight_[e * kPoints + q];
-    const auto slope = slopes(e, q);
-    for (int a = 0; a < N; ++a)
-      for (int i = 0; i < D; ++i)
-        for (int j = 0; j < D; ++j) b(D * i + j, D * a + i) = slope(a, j);
-    const Tensor f = gradient(moved, e, q);
-    typename ResponseIn<D>::Tangent tangent = law.template respond<D>(f).tangent;
-    if (law.mean) {
-      const Tensor g = f.inverse().transpose();
-      const auto flat_g = flat<D>(g);
-      tangent +=
-          first * f.determinant() * (flat_g * flat_g.transpose() + derivative_of_inverse_transpose<D>(g));
-      sum += w * b.transpose() * flat<D>(cofactor<D>(f));
-    }
-    k.noalias() += w * b.transpose() * (tangent * b).eval();
-  }
-  if (law.mean) k += second / volume_[e] * sum * sum.transpose();
-  return 0.5 * (k + k.transpose());
-}
-
-// ---- what is shown ----
-
-namespace {
-
-/// Deformation gradient, stress P and energy density of a quadrature point, in space.
-struct PointState {
-  Eigen::Matrix3d f = Eigen::Matrix3d::Identity(), stress = Eigen::Matrix3d::Zero();
-  double energy = 0;
-
-  /// Equivalent of the Cauchy stress.
-  [[nodiscard]] double mises() const {
-    const Eigen::Matrix3d cauchy = stress * f.transpose() / f.determinant();
-    const Eigen::Matrix3d deviator = cauchy - cauchy.trace() / 3 * Eigen::Matrix3d::Identity();
-    return std::sqrt(1.5) * deviator.norm();
-  }
-};
-
-template <int D>
-PointState point_state(const ElementLaw& law, const Eigen::Matrix<double, D, D>& f, double mean_j) {
-  PointState state;
-  state.f.template topLeftCorner<D, D>() = f;
-  if (law.kinematics == Kinematics::plane_stress) {
-    const ResponseIn<D> response = law.respond<D>(f);
-    if constexpr (D == 2) state.f(2, 2) = law.local.thickness_stretch(f);
-    state.stress.template topLeftCorner<D, D>() = response.stress;
-    state.energy = response.energy;
-    return state;
-  }
-  const Response response = law.local.solid(state.f);
-  state.stress = response.stress;
-  state.energy = response.energy;
-  if (!law.mean) return state;
-  double first = 0, second = 0;
-  state.energy += volume_energy(*law.mean, mean_j, first, second);
-  state.stress += first * cofactor<3>(state.f);
-  return state;
-}
-
-}  // namespace
-
-template <class E>
-std::vector<ModelField> FiniteElements::KernelOf<E>::fields(std::span<const double> u) const {
-  const std::size_t nodes = mesh_.node.size();
-  std::vector<ModelField> fields{{"strain_energy_density", 1, std::vector<double>(nodes), "J/m^3"},
-                                 {"nominal_stress", 9, std::vector<double>(9 * nodes), "Pa"},
-                                 {"deformation_gradient", 9, std::vector<double>(9 * nodes), ""},
-                                 {"mises_stress", 1, std::vector<double>(nodes), "Pa"}};
-  std::vector<double> weights(nodes, 0.0);
-  const auto rule = E::rule();
-  for (std::size_t e = 0; e < mesh_.elements(); ++e) {
-    const Nodal moved = nodal(u, e);
-    const double j = mean_dilatation(moved, e);
-    for (std::size_t q = 0; q < kPoints; ++q) {
-      const PointState state = point_state<D>(law_of(e), gradient(moved, e, q), j);
-      const double mises = state.mises();
-      const auto value = E::at(rule[q].at).value;
-      for (int a = 0; a < N; ++a) {
-        const std::size_t node = mesh_.nodes(e)[static_cast<std::size_t>(a)];
-        const double w = weight_[e * kPoints + q] * value(a) * value(a);
-        weights[node] += w;
-        fields[0].values[node] += w * state.energy;
-        for (int c = 0; c < 9; ++c) {
-          const std::size_t at = 9 * node + static_cast<std::size_t>(c);
-          fields[1].values[at] += w * state.stress(c / 3, c % 3);
-          fields[2].values[at] += w * state.f(c / 3, c % 3);
-        }
-        fields[3].values[node] += w * mises;
-      }
-    }
-  }
-  for (ModelField& field : fields)
-    for (std::size_t n = 0; n < field.values.size(); ++n)
-      field.values[n] /= weights[n / static_cast<std::size_t>(field.components)];
-  return fields;
-}
-
-// ---- the model ----
-
 FiniteElements::FiniteElements(MeshBody mesh, FiniteElementsSettings settings)
     : mesh_(std::move(mesh)),
       body_(nodes_as_body(mesh_)),
       dimension_(static_cast<std::size_t>(mesh_.dimension())) {
   check_elements(mesh_);
   std::vector<ElementLaw> laws = element_laws(settings, mesh_.dimension());
-  with_element(mesh_.shape,
-               [&]<class E>(E) { kernel_ = std::make_unique<KernelOf<E>>(mesh_, std::move(laws)); });
+  const bool is_q8 = mesh_.shape == ElementShape::q8;
+  if (settings.dilatation == Dilatation::linear && !is_q8)
+    throw InputError(
+        fmt::format("a linear dilatation belongs to elements q8, and locks others; found {}, expected "
+                    "dilatation = \"mean\", or none",
+                    name_of(mesh_.shape)));
+  const Dilatation dilatation = settings.dilatation.value_or(is_q8 ? Dilatation::linear : Dilatation::mean);
+  kernel_ = make_element_kernel(mesh_, std::move(laws), dilatation);
 }
 
 FiniteElements::~FiniteElements() = default;
@@ -436,9 +74,10 @@ std::optional<Breakdown> FiniteElements::internal_force(std::span<const double> 
   const auto wrong = kernel_->force(u, force);
   if (!wrong) return std::nullopt;
   if (const auto turned = kernel_->turned_over(u))
-    return Breakdown{mesh_.centre(*turned), fmt::format("element {} is turned inside out", *turned + 1)};
+    return Breakdown{mesh_.centre(*turned),
+                     fmt::format("element {} is turned inside out", mesh_.label(*turned))};
   return Breakdown{mesh_.centre(*wrong),
-                   fmt::format("the law says nothing of the strain of element {}", *wrong + 1)};
+                   fmt::format("the law says nothing of the strain of element {}", mesh_.label(*wrong))};
 }
 
 double FiniteElements::strain_energy(std::span<const double> u) {
@@ -467,7 +106,8 @@ void FiniteElements::tangent(std::span<const double> u, std::size_t first, std::
 std::optional<Breakdown> FiniteElements::inspect(std::span<const double> u) {
   const auto turned = kernel_->turned_over(u);
   if (!turned) return std::nullopt;
-  return Breakdown{mesh_.centre(*turned), fmt::format("element {} is turned inside out", *turned + 1)};
+  return Breakdown{mesh_.centre(*turned),
+                   fmt::format("element {} is turned inside out", mesh_.label(*turned))};
 }
 
 void FiniteElements::move(std::span<double> u, const std::array<std::array<double, 3>, 3>& gradient,
@@ -491,15 +131,44 @@ std::vector<ModelField> FiniteElements::fields(std::span<const double> u) {
   return kernel_->fields(u);
 }
 
+bool FiniteElements::has_memory() const {
+  return !kernel_->memory.empty();
+}
+
+void FiniteElements::go_on(double dt) {
+  kernel_->memory.go_on(dt);
+}
+
+void FiniteElements::go_back() {
+  kernel_->memory.go_back();
+}
+
+Passage FiniteElements::advance(std::span<const double> /*u*/, std::span<double> /*force*/) {
+  kernel_->memory.pass();
+  return {};
+}
+
+void FiniteElements::save(Snapshot& to) const {
+  if (has_memory()) kernel_->memory.save(to);
+}
+
+void FiniteElements::restore(const Snapshot& from) {
+  if (has_memory()) kernel_->memory.restore(from);
+}
+
 std::vector<std::string> FiniteElements::describe() const {
   const bool mean = std::any_of(kernel_->laws.begin(), kernel_->laws.end(),
                                 [](const ElementLaw& law) { return law.mean.has_value(); });
   const std::size_t points =
       with_element(mesh_.shape, []<class E>(E) { return static_cast<std::size_t>(E::Q); });
-  return {
-      fmt::format("mesh: {} elements {} of {} quadrature points, {} nodes, mean size {:.6g} m",
-                  mesh_.elements(), name_of(mesh_.shape), points, mesh_.node.size(), body_.spacing),
-      fmt::format("change of volume: {}", mean ? "its mean over each element" : "at every quadrature point")};
+  const std::map<Dilatation, const char*> ways{
+      {Dilatation::full, "at every quadrature point"},
+      {Dilatation::mean, "its mean over each element"},
+      {Dilatation::linear, "a linear fit over each element"},
+      {Dilatation::selective, "that of the mean gradient of each element"}};
+  return {fmt::format("mesh: {} elements {} of {} quadrature points, {} nodes, mean size {:.6g} m",
+                      mesh_.elements(), name_of(mesh_.shape), points, mesh_.node.size(), body_.spacing),
+          fmt::format("change of volume: {}", ways.at(mean ? kernel_->dilatation : Dilatation::full))};
 }
 
 }  // namespace riven

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "fem/dilatation.hpp"
 #include "fem/mesh_body.hpp"
 #include "material/material.hpp"
 #include "material/plane.hpp"
@@ -9,27 +10,25 @@
 
 namespace riven {
 
-/// How an element's change of volume enters its energy.
-enum class Dilatation {
-  full,  // at every quadrature point: locks if nearly incompressible, except in plane stress
-  mean,  // its mean over the element: W(F) without U, and V U(mean of J), eq. (15) of the theory
-};
+class ElementKernel;
 
 struct FiniteElementsSettings {
   std::vector<Material> materials;  // by their numbers in the mesh
   Plane plane = Plane::stress;      // in two dimensions
-  /// `mean` where a material has a volumetric part and something holds the body across, unless given.
+  /// Where a material has a volumetric part and something holds the body across, `mean` unless given, of
+  /// eight-node quadrilaterals `linear`.
   std::optional<Dilatation> dilatation{};
 };
 
 /// Finite elements with displacements as unknowns, at any deformation: force and tangent of eq. (14) to (16)
 /// of the space-time theory, by Gauss's rule. A state holds u_x of all nodes, then u_y (and u_z). Elements
 /// write their forces apart; a node sums those of its elements in their order, so that bits do not depend on
-/// threads.
+/// threads. Materials that relax remember their past at quadrature points; energies then are the work taken
+/// up, stored or not.
 class FiniteElements final : public Model {
  public:
-  /// Throws InputError for elements that are turned over, a mean dilatation that no material has, and
-  /// incompressible materials in anything but plane stress.
+  /// Throws InputError for elements that are turned over, a dilatation that no material has or that does not
+  /// fit the elements, and incompressible materials in anything but plane stress.
   FiniteElements(MeshBody mesh, FiniteElementsSettings settings);
   ~FiniteElements() override;
   FiniteElements(FiniteElements&&) = delete;  // the kernel looks at the mesh
@@ -39,6 +38,12 @@ class FiniteElements final : public Model {
                                                         std::span<double> force) override;
   [[nodiscard]] double strain_energy(std::span<const double> u) override;
   [[nodiscard]] bool conservative() const override { return true; }
+  [[nodiscard]] bool has_memory() const override;
+  void go_on(double dt) override;
+  void go_back() override;
+  [[nodiscard]] Passage advance(std::span<const double> u, std::span<double> force) override;
+  void save(Snapshot& to) const override;
+  void restore(const Snapshot& from) override;
   void mass(std::span<double> mass) const override;
   void stiffness_bound(std::span<const double> u, std::span<double> bound) override;
   /// A part is an element.
@@ -66,14 +71,10 @@ class FiniteElements final : public Model {
   [[nodiscard]] const Body& body() const { return body_; }
 
  private:
-  class Kernel;  // of one shape of elements
-  template <class E>
-  class KernelOf;
-
   MeshBody mesh_;
   Body body_;
   std::size_t dimension_;
-  std::unique_ptr<Kernel> kernel_;
+  std::unique_ptr<ElementKernel> kernel_;
 };
 
 }  // namespace riven

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
+#include "geometry/side_rule.hpp"
 
 namespace riven {
 
@@ -41,36 +42,16 @@ void for_each_quadrature_point(const MeshBody& mesh, std::size_t element, const 
 /// Integrals of a side's shape functions: length or area, without thickness, by Gauss's rule.
 std::vector<double> side_integrals(const MeshBody& mesh, const Side& side) {
   std::vector<double> integrals(side.node.size(), 0.0);
-  const auto x = [&](std::size_t a) {
-    return Eigen::Map<const Eigen::Vector3d>(mesh.node[side.node[a]].data());
-  };
-  if (mesh.dimension() == 2) {
-    const bool curved = side.node.size() == 3;
-    for (const auto& point : gauss<2, 3>()) {  // the square's first direction
-      const double s = point.at(0), weight = 0.5 * point.weight;
-      const std::array<double, 3> n = curved ? std::array{0.5 * s * (s - 1), 0.5 * s * (s + 1), 1 - s * s}
-                                             : std::array{0.5 * (1 - s), 0.5 * (1 + s), 0.0};
-      const std::array<double, 3> d =
-          curved ? std::array{s - 0.5, s + 0.5, -2 * s} : std::array{-0.5, 0.5, 0.0};
-      Eigen::Vector3d along = Eigen::Vector3d::Zero();
-      for (std::size_t a = 0; a < side.node.size(); ++a) along += d[a] * x(a);
-      for (std::size_t a = 0; a < side.node.size(); ++a) integrals[a] += weight * n[a] * along.norm();
-    }
-    return integrals;
-  }
-  if (side.node.size() == 3) {
-    const double area = 0.5 * Eigen::Vector3d(x(1) - x(0)).cross(Eigen::Vector3d(x(2) - x(0))).norm();
-    return {area / 3, area / 3, area / 3};
-  }
-  for (const auto& point : gauss<2, 3>()) {
-    const auto f = Q4::at(point.at);
+  const bool in_space = mesh.dimension() == 3;
+  for (const SidePoint& point : side_rule(mesh.dimension(), side.node.size())) {
     Eigen::Vector3d r = Eigen::Vector3d::Zero(), s = r;
-    for (int a = 0; a < 4; ++a) {
-      r += f.slope(a, 0) * x(static_cast<std::size_t>(a));
-      s += f.slope(a, 1) * x(static_cast<std::size_t>(a));
+    for (std::size_t a = 0; a < side.node.size(); ++a) {
+      const Eigen::Map<const Eigen::Vector3d> x(mesh.node[side.node[a]].data());
+      r += point.slope[0][a] * x;
+      s += point.slope[1][a] * x;
     }
-    for (int a = 0; a < 4; ++a)
-      integrals[static_cast<std::size_t>(a)] += point.weight * f.value(a) * r.cross(s).norm();
+    const double size = point.weight * (in_space ? r.cross(s).norm() : r.norm());
+    for (std::size_t a = 0; a < side.node.size(); ++a) integrals[a] += size * point.value[a];
   }
   return integrals;
 }
@@ -194,18 +175,18 @@ Point MeshBody::centre(std::size_t element) const {
   return sum;
 }
 
-std::vector<std::uint32_t> MeshBody::nodes_on(std::size_t of) const {
+std::vector<std::uint32_t> MeshBody::nodes_on(std::size_t edge) const {
   std::vector<std::uint32_t> list;
-  for (const Side& side : face[of]) list.insert(list.end(), side.node.begin(), side.node.end());
+  for (const Side& side : sides(edge)) list.insert(list.end(), side.node.begin(), side.node.end());
   std::sort(list.begin(), list.end());
   list.erase(std::unique(list.begin(), list.end()), list.end());
   return list;
 }
 
-std::vector<NodeShare> MeshBody::face_shares(std::size_t of) const {
+std::vector<NodeShare> MeshBody::face_shares(std::size_t edge) const {
   std::vector<NodeShare> shares;
   const double across = dimension() == 2 ? thickness : 1;
-  for (const Side& side : face[of]) {
+  for (const Side& side : sides(edge)) {
     const std::vector<double> integrals = side_integrals(*this, side);
     for (std::size_t a = 0; a < integrals.size(); ++a)
       shares.push_back({side.node[a], across * integrals[a]});
@@ -213,10 +194,14 @@ std::vector<NodeShare> MeshBody::face_shares(std::size_t of) const {
   return summed(std::move(shares));
 }
 
-double MeshBody::face_area(std::size_t of) const {
-  const std::vector<NodeShare> shares = face_shares(of);
+double MeshBody::face_area(std::size_t edge) const {
+  const std::vector<NodeShare> shares = face_shares(edge);
   return std::accumulate(shares.begin(), shares.end(), 0.0,
                          [](double sum, const NodeShare& share) { return sum + share.extent; });
+}
+
+std::optional<std::size_t> MeshBody::axis_across(std::size_t edge) const {
+  return edge < face.size() ? std::optional(edge / 2) : group[edge - face.size()].axis;
 }
 
 std::vector<NodeShare> MeshBody::volume_shares(std::span<const std::size_t> list) const {
@@ -344,7 +329,7 @@ void check_elements(const MeshBody& mesh) {
         throw InputError(
             fmt::format("element {} at ({:.4g}, {:.4g}, {:.4g}) m is turned over or folded; expected "
                         "corners counterclockwise and no reentrant ones",
-                        e + 1, at[0], at[1], at[2]));
+                        mesh.label(e), at[0], at[1], at[2]));
       });
   });
 }

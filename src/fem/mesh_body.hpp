@@ -14,7 +14,15 @@ namespace riven {
 
 /// A part of a mesh's boundary: an edge of an element in two dimensions, a face in three.
 struct Side {
-  std::vector<std::uint32_t> node;  // corners first
+  std::vector<std::uint32_t> node;  // corners first; seen from outside, counterclockwise
+};
+
+/// Sides under a name of their own: a physical group of a mesh.
+struct SideGroup {
+  std::string name;
+  std::vector<Side> sides;
+  std::optional<std::size_t> axis{};  // that they all are perpendicular to, if there is one
+  bool inside = false;                // some have elements on both of their sides
 };
 
 /// A node's share of an integral over a part of a mesh: the integral of its shape function.
@@ -31,6 +39,8 @@ struct MeshBody {
   std::vector<std::uint32_t> corner;        // nodes of every element, one after the other
   std::vector<std::uint8_t> material;       // of each element; empty: all have material 0
   std::array<std::vector<Side>, 6> face{};  // left, right, bottom, top, back, front
+  std::vector<SideGroup> group{};           // further edges
+  std::vector<std::size_t> number{};        // of each element in its file; empty: they count from 1
 
   [[nodiscard]] int dimension() const { return dimension_of(shape); }
   [[nodiscard]] std::size_t elements() const { return corner.size() / nodes_of(shape); }
@@ -43,11 +53,23 @@ struct MeshBody {
   }
   /// Mean of its nodes (m).
   [[nodiscard]] Point centre(std::size_t element) const;
-  /// Nodes of a face, ascending.
-  [[nodiscard]] std::vector<std::uint32_t> nodes_on(std::size_t face) const;
-  /// Area of a face (m^2), shared by its nodes.
-  [[nodiscard]] std::vector<NodeShare> face_shares(std::size_t face) const;
-  [[nodiscard]] double face_area(std::size_t face) const;
+  /// What messages call an element.
+  [[nodiscard]] std::size_t label(std::size_t element) const {
+    return number.empty() ? element + 1 : number[element];
+  }
+
+  // An edge has a number: 0 to 5 are the faces of the box around the mesh, from 6 on the groups of sides.
+  [[nodiscard]] std::size_t edges() const { return face.size() + group.size(); }
+  [[nodiscard]] const std::vector<Side>& sides(std::size_t edge) const {
+    return edge < face.size() ? face[edge] : group[edge - face.size()].sides;
+  }
+  /// The axis that an edge is perpendicular to.
+  [[nodiscard]] std::optional<std::size_t> axis_across(std::size_t edge) const;
+  /// Nodes of an edge, ascending.
+  [[nodiscard]] std::vector<std::uint32_t> nodes_on(std::size_t edge) const;
+  /// Area of an edge (m^2), shared by its nodes.
+  [[nodiscard]] std::vector<NodeShare> face_shares(std::size_t edge) const;
+  [[nodiscard]] double face_area(std::size_t edge) const;
   /// Volume of elements (m^3), shared by their nodes.
   [[nodiscard]] std::vector<NodeShare> volume_shares(std::span<const std::size_t> elements) const;
   /// Volume (m^3) of each element that a lumped mass gives to each of its nodes: row sums, of eight-node

@@ -156,7 +156,7 @@ class GmshReader {
       const int dimension = in_.integer("the dimension of an entity");
       const int entity = in_.integer("the number of an entity");
       const GmshType type = read_type(dimension);
-      ElementBlock block{.kind = type.kind, .entity = entity, .groups = {}, .node = {}, .number = {}};
+      ElementBlock block{.kind = type.kind, .entity = entity, .groups = {}, .node = {}, .number = {}, .further = {}};
       for (std::size_t n = in_.count("a number of elements"); n > 0; --n) read_element(type, block);
       found += block.size();
       mesh_.blocks.push_back(std::move(block));
@@ -185,7 +185,7 @@ class GmshReader {
       const auto node = node_.find(tag);
       if (node == node_.end())
         in_.fail(fmt::format("element {} has node {}, which is not in $Nodes", block.number.back(), tag));
-      if (n < corners_of(type.kind)) block.node.push_back(node->second);
+      (n < corners_of(type.kind) ? block.node : block.further).push_back(node->second);
     }
   }
 

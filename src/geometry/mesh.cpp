@@ -118,6 +118,10 @@ const char* name_of(ElementKind kind) {
   return facts(kind).name;
 }
 
+const std::vector<std::vector<std::size_t>>& sides_of(ElementKind kind) {
+  return facts(kind).sides;
+}
+
 int Mesh::dimension() const {
   int highest = 0;
   for (const ElementBlock& block : blocks)

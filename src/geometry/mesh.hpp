@@ -25,6 +25,8 @@ enum class ElementKind : std::uint8_t {
 [[nodiscard]] int dimension_of(ElementKind kind);
 [[nodiscard]] std::size_t corners_of(ElementKind kind);
 [[nodiscard]] const char* name_of(ElementKind kind);
+/// Corners of each side of an element of two or three dimensions, in order round it.
+[[nodiscard]] const std::vector<std::vector<std::size_t>>& sides_of(ElementKind kind);
 
 /// Elements of one kind that make one geometrical entity: a curve, a surface, a volume. Their corners stand
 /// in the order of Gmsh, which is that of VTK: base, then top.
@@ -34,10 +36,16 @@ struct ElementBlock {
   std::vector<std::size_t> groups;  // of the mesh, to which they belong
   std::vector<std::uint32_t> node;  // corners_of(kind) nodes for each element
   std::vector<std::size_t> number;  // of each element in its file
+  std::vector<std::uint32_t> further{};  // of second order: the other nodes, as many for each element
 
   [[nodiscard]] std::size_t size() const { return number.size(); }
   [[nodiscard]] std::span<const std::uint32_t> corners(std::size_t element) const {
     return std::span(node).subspan(element * corners_of(kind), corners_of(kind));
+  }
+  /// Its nodes besides the corners, in the order of Gmsh: those on its edges come first.
+  [[nodiscard]] std::span<const std::uint32_t> others(std::size_t element) const {
+    const std::size_t n = size() == 0 ? 0 : further.size() / size();
+    return std::span(further).subspan(element * n, n);
   }
 };
 
@@ -47,7 +55,7 @@ struct MeshGroup {
   std::string name;
 };
 
-/// Nodes, elements of first order by kind, groups. Lengths are in the unit of the file until they are scaled.
+/// Nodes, elements by kind, groups. Lengths are in the unit of the file until they are scaled.
 struct Mesh {
   std::vector<Point> node;
   std::vector<ElementBlock> blocks;

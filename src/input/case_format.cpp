@@ -10,6 +10,7 @@
 #include "input/contact_format.hpp"
 #include "input/crack_format.hpp"
 #include "input/crack_probe_format.hpp"
+#include "input/element_mesh.hpp"
 #include "input/elements_format.hpp"
 #include "input/failure_format.hpp"
 #include "input/field_format.hpp"
@@ -26,6 +27,8 @@ namespace {
 
 using kind::AnyUnit;
 using kind::Components;
+using kind::Flag;
+using kind::Formula;
 using kind::Integer;
 using kind::Interval;
 using kind::Part;
@@ -115,14 +118,18 @@ void check_load(const LoadInput& load, const Case& c, const Check& check) {
   for (const char* key : {"displacement", "velocity", "traction", "body_force"})
     if (check.given(key) && all_free(load.components()))
       check.fail(key, "every entry is \"free\"; expected a load");
+  if (load.pressure && !c.geometry.elements)
+    check.fail("pressure",
+               "acts on the sides of finite elements, and this body has points; expected `traction`, "
+               "which does not turn with the body");
   if (load.layer && load.traction.empty()) check.fail("layer", "belongs to traction");
   const std::vector<std::string> edges = edge_names(c);
   for (const Named& name : load.on) {
     const bool edge = std::find(edges.begin(), edges.end(), name.text) != edges.end();
-    if (!edge && !load.traction.empty())
-      check.fail("on", fmt::format("\"{}\" is a set, and a traction acts on an edge; expected {}, or "
-                                   "body_force instead of traction",
-                                   name.text, listed(edges)));
+    if (!edge && (!load.traction.empty() || load.pressure))
+      check.fail("on", fmt::format("\"{}\" is a set, and a {} acts on an edge; expected {}, or "
+                                   "body_force instead of it",
+                                   name.text, load.pressure ? "pressure" : "traction", listed(edges)));
     if (edge && !load.body_force.empty())
       check.fail("on", fmt::format("\"{}\" is an edge, and a body force acts on points; expected a set, "
                                    "nothing for the whole body, or traction instead of body_force",
@@ -131,26 +138,33 @@ void check_load(const LoadInput& load, const Case& c, const Check& check) {
 }
 
 Format describe(LoadInput& load, const Case& c) {
-  return {.doc = "What is prescribed on an edge or a set.",
-          .at = &load.at,
-          .keys = {Key{"on", Parts{&load.on},
-                       "An edge (left, right, bottom, top, back, front) or a set, or a list of them. Only a "
-                       "body_force may do without: it then acts on the whole body."},
-                   Key{"displacement", Components{&load.displacement},
-                       "One entry per direction: \"free\" or a length, a formula of x, y, z and stretch "
-                       "(statics) or t (in time)."},
-                   Key{"velocity", Components{&load.velocity, dimension::velocity},
-                       "The same for a velocity, from zero displacement at time 0 on."}
-                       .applies(in_time(c)),
-                   Key{"traction", Components{&load.traction, dimension::pressure},
-                       "The same for a force per undeformed area of an edge; \"free\" and 0 are no force."},
-                   Key{"body_force", Components{&load.body_force, force_density},
-                       "The same for a force per undeformed volume of a set, or of the whole body."},
-                   Key{"layer", Quantity{&load.layer, dimension::length, positive},
-                       "Points this near to the edge carry its traction, in proportion to their volumes; "
-                       "geometry.spacing unless given."}},
-          .groups = {{{"displacement", "velocity", "traction", "body_force"}}},
-          .finish = [&load, &c](const Check& check) { check_load(load, c, check); }};
+  return {
+      .doc = "What is prescribed on an edge or a set.",
+      .at = &load.at,
+      .keys =
+          {Key{"on", Parts{&load.on},
+               "An edge (left, right, bottom, top, back, front) or a set, or a list of them. Only a "
+               "body_force may do without: it then acts on the whole body."},
+           Key{"displacement", Components{&load.displacement},
+               "One entry per direction: \"free\" or a length, a formula of x, y, z and stretch "
+               "(statics) or t (in time)."},
+           Key{"velocity", Components{&load.velocity, dimension::velocity},
+               "The same for a velocity, from zero displacement at time 0 on."}
+               .applies(in_time(c)),
+           Key{"traction", Components{&load.traction, dimension::pressure},
+               "The same for a force per undeformed area of an edge; \"free\" and 0 are no force. It keeps "
+               "its direction and "
+               "size, as a dead pressure would."},
+           Key{"pressure", Formula{&load.pressure, dimension::pressure},
+               "Of finite elements: a force per deformed area of an edge, across it and into the body, which "
+               "turns and grows with it. In plane stress the area is that of the undeformed thickness."},
+           Key{"body_force", Components{&load.body_force, force_density},
+               "The same for a force per undeformed volume of a set, or of the whole body."},
+           Key{"layer", Quantity{&load.layer, dimension::length, positive},
+               "Points this near to the edge carry its traction, in proportion to their volumes; "
+               "geometry.spacing unless given."}},
+      .groups = {{{"displacement", "velocity", "traction", "pressure", "body_force"}}},
+      .finish = [&load, &c](const Check& check) { check_load(load, c, check); }};
 }
 
 Format describe(InitialInput& initial, const Case& c) {
@@ -216,9 +230,22 @@ Format describe(SolverInput& s) {
                "Output states, moving away from 1."}
                .applies(in_statics)
                .required(),
-           Key{"increment", Quantity{&s.increment, dimension::none, positive}, "Largest step of the stretch."}
+           Key{"increment", Quantity{&s.increment, dimension::none, positive},
+               "Largest step of the stretch; with arc-length control its first one, and later ones are as "
+               "long "
+               "on the path, or shorter."}
                .applies(in_statics)
                .otherwise("0.1"),
+           Key{"control", Text{&s.control, {"load", "arc-length"}},
+               "What steps are of: the stretch, or the length of the path of equilibria, which then is "
+               "followed through points where the stretch has a maximum or a minimum, and where it is "
+               "unstable."}
+               .applies(When{"method", &s.method, {newton}})
+               .otherwise("\"load\""),
+           Key{"max_steps", Integer{&s.max_steps, 1},
+               "After which the path ends, though it may not have reached the last stretch."}
+               .applies(When{"control", &s.control, {"arc-length"}})
+               .otherwise("1000"),
            Key{"tolerance", Quantity{&s.tolerance, dimension::none, fraction},
                "Statics: L2 norm of the free forces over that of the constraint forces, at which a state has "
                "converged; 1e-5 unless given. Space-time and generalised-alpha: norms of residual and "
@@ -246,8 +273,10 @@ Format describe(SolverInput& s) {
                .otherwise("0"),
            Key{"start", Text{&s.start, {"initial", "equilibrium"}},
                "The undeformed state or what [[initial]] says, or the equilibrium under the loads of time 0, "
-               "by dynamic relaxation, with velocity 0."}
-               .applies(by_verlet)
+               "with velocity 0: "
+               "by dynamic relaxation before explicit steps, else by Newton's method. Without inertia it is "
+               "always the equilibrium."}
+               .applies(in_time)
                .otherwise("\"initial\""),
            Key{"start_tolerance", Quantity{&s.start_tolerance, dimension::none, fraction},
                "L2 norm of the free forces over those of constraints and loads, at which that equilibrium is "
@@ -270,6 +299,11 @@ Format describe(SolverInput& s) {
                "the step is halved; it grows where there is much less."}
                .applies(in_slabs)
                .otherwise("1e-4"),
+           Key{"inertia", Flag{&s.inertia},
+               "false leaves masses out: the body is in equilibrium at any time, only what its material "
+               "remembers moves on."}
+               .applies(in_slabs)
+               .otherwise("true"),
            Key{"spectral_radius", Quantity{&s.spectral_radius, dimension::none, {.low = 0, .high = 1}},
                "Amplification of motions far faster than the step, 0 to 1; 1 is Newmark's average "
                "acceleration."}
@@ -277,6 +311,13 @@ Format describe(SolverInput& s) {
                .otherwise("0.8")},
       .finish = [&s](const Check& check) {
         check_stretch(s.stretch, check);
+        if (!s.inertia) {
+          if (check.given("start") && s.start == "initial")
+            check.fail("start",
+                       "without inertia the body starts in equilibrium; expected none, or inertia = true");
+          s.start = "equilibrium";
+          if (!check.given("start_tolerance")) s.start_tolerance = s.tolerance.value_or(1e-8);
+        }
         if (s.gauss_points > 6) check.fail("gauss_points", "expected 2 to 6");
         if (!s.tolerance && !s.is_explicit()) s.tolerance = s.in_time() ? 1e-8 : 1e-5;
         if (s.stretch.empty()) {
@@ -361,8 +402,8 @@ Format describe(ProbeInput& p, const Case& c) {
           "Instead of that largest value, what this metric, stretch or time was there."}
           .applies(kinds({"largest"})),
       Key{"impactor", Text{&p.impactor},
-          "The impactor whose position, velocity and force, that of the body on it, are followed: "
-          "name_position_x and so on."}
+          "The impactor whose position, velocity (of points) and force, that of the body on it, are "
+          "followed: name_position_x and so on."}
           .applies(kinds({"impactor"}))
           .required()};
   for (Key& key : crack_probe_keys(p)) keys.push_back(std::move(key));
@@ -471,11 +512,18 @@ std::vector<std::string> edge_names(const Case& of) {
   names.resize(2 * static_cast<std::size_t>(of.geometry.dimension));
   for (std::size_t face = names.size(); face-- > 0;)
     if (of.geometry.open_faces[face]) names.erase(names.begin() + static_cast<std::ptrdiff_t>(face));
+  const auto take = [&names](const std::string& name) { std::erase(names, name); };
+  for (const std::string& name : other_groups(of.geometry)) take(name);
+  for (const std::string& name : edge_groups(of.geometry)) {
+    take(name);  // the user's goes before a side of the box
+    names.push_back(name);
+  }
   return names;
 }
 
 std::vector<std::string> part_names(const Case& of) {
   std::vector<std::string> names = edge_names(of);
+  for (std::string& name : other_groups(of.geometry)) names.push_back(std::move(name));
   for (const SetInput& set : of.sets) names.push_back(set.name);
   return names;
 }
@@ -519,8 +567,7 @@ Format describe(Case& c) {
                .applies(method(c, verlet)),
            Key{"impactor",
                tables(c.impactors, [&c](ImpactorInput& i, std::size_t) { return describe(i, c); }),
-               "Rigid impactors."}
-               .applies(method(c, verlet)),
+               "Rigid impactors."},
            Key{"output", Table{[&c] { return describe(c.output, c); }, always}, "The output."}.otherwise(
                "{}"),
            Key{"probe", tables(c.probes, [&c](ProbeInput& p, std::size_t) { return describe(p, c); }),

@@ -43,6 +43,7 @@ class ValueText {
 
   std::string operator()(const kind::Text& k) const { return k.to->empty() ? "" : toml_string(*k.to); }
   std::string operator()(const kind::Texts& k) const { return list(*k.to, toml_string); }
+  std::string operator()(const kind::Flag& k) const { return *k.to ? "true" : "false"; }
   std::string operator()(const kind::Integer& k) const { return fmt::format("{}", *k.to); }
   std::string operator()(const kind::Integers& k) const {
     return k.to->empty() ? "" : list(*k.to, [](int i) { return fmt::format("{}", i); });
@@ -70,6 +71,9 @@ class ValueText {
     return k.to->empty() ? "" : list(*k.to, [&](const Point& p) { return place(p); });
   }
   std::string operator()(const kind::Condition& k) const {
+    return *k.to ? toml_string((*k.to)->written()) : "";
+  }
+  std::string operator()(const kind::Formula& k) const {
     return *k.to ? toml_string((*k.to)->written()) : "";
   }
   std::string operator()(const kind::Components& k) const {

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "base/nearest_name.hpp"
+#include "input/element_mesh.hpp"
 
 namespace riven {
 
@@ -87,8 +88,7 @@ void refuse_bonds(const Case& c) {
   if (!c.interfaces.empty())
     refuse(c.interfaces.front().at, "bonds that break; expected a peridynamic model");
   if (!c.failure.not_in.empty()) refuse(c.failure.at, "bonds that break; expected a peridynamic model");
-  if (c.contact) refuse(c.contact->at, "contact yet; expected a peridynamic model");
-  if (!c.impactors.empty()) refuse(c.impactors.front().at, "contact yet; expected a peridynamic model");
+  if (c.contact) refuse(c.contact->at, "contact with itself yet; expected a peridynamic model");
   for (const MaterialInput& material : c.materials)
     if (material.breaks() || material.critical_damage)
       refuse(material.at, "bonds that break; expected no critical_stretch and the like");
@@ -98,8 +98,8 @@ void refuse_results(const Case& c) {
   for (const LoadInput& load : c.loads)
     if (load.layer)
       refuse(load.at, "layers of points; expected no `layer`: a traction acts on the edges of elements");
-  const std::vector<std::string> kinds{"reaction", "nominal-stress", "displacement",
-                                       "stretch",  "strain",         "largest"};
+  const std::vector<std::string> kinds{"reaction", "nominal-stress", "displacement", "stretch",
+                                       "strain",   "largest",        "impactor"};
   for (const ProbeInput& probe : c.probes)
     if (std::find(kinds.begin(), kinds.end(), probe.kind) == kinds.end())
       refuse(probe.at, fmt::format("\"{}\" to be followed; expected one of {}", probe.kind, listed(kinds)));
@@ -186,6 +186,12 @@ void finish_elements(GeometryInput& geometry, const Check& check) {
       check.fail(key, "belongs to points with bonds; expected none: the body has elements");
   geometry.horizon = 0;  // the writer leaves out what has no value
   geometry.bonds.clear();
+  if (is_element_mesh(geometry)) {
+    const std::string found = element_name(*geometry.elements->mesh);
+    if (geometry.element != found)
+      check.fail("element", fmt::format("found \"{}\", and the mesh has {}; expected \"{}\", or nothing",
+                                        geometry.element, found, found));
+  }
   const std::vector<std::string>& fitting = geometry.dimension == 2 ? kInPlane : kInSpace;
   if (geometry.element.empty()) geometry.element = fitting.front();
   if (std::find(fitting.begin(), fitting.end(), geometry.element) == fitting.end())
@@ -199,8 +205,8 @@ void check_elements(const Case& c) {
     if (wanted)
       throw InputError(c.geometry.at,
                        "geometry: the model \"finite-elements\" needs a mesh; expected `elements` in "
-                       "the shape, such as box = { ..., elements = [20, 10] }, an arch or a "
-                       "quadrilateral");
+                       "the shape, such as box = { ..., elements = [20, 10] }, an arch, a "
+                       "quadrilateral or mesh = { ..., as = \"elements\" }");
     return;
   }
   if (!wanted)

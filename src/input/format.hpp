@@ -42,6 +42,9 @@ struct Texts {
   std::vector<std::string>* to;
   std::vector<std::string> among{};
 };
+struct Flag {
+  bool* to;
+};
 struct Integer {
   int* to;
   int low;
@@ -78,6 +81,11 @@ struct Places {
 /// A formula of x, y, z that is true or false.
 struct Condition {
   std::optional<Expression>* to;
+};
+/// A formula of x, y, z and t or stretch.
+struct Formula {
+  std::optional<Expression>* to;
+  Dimension dimension;
 };
 /// One value per direction, a formula of x, y, z and, unless it belongs to the start, t or stretch; or
 /// "free".
@@ -117,10 +125,10 @@ struct NamedTables {
 
 }  // namespace kind
 
-using Kind =
-    std::variant<kind::Text, kind::Texts, kind::Integer, kind::Integers, kind::Quantity, kind::Quantities,
-                 kind::AnyUnit, kind::Place, kind::Places, kind::Condition, kind::Components, kind::Interval,
-                 kind::Part, kind::Parts, kind::Table, kind::Tables, kind::NamedTables>;
+using Kind = std::variant<kind::Text, kind::Texts, kind::Flag, kind::Integer, kind::Integers, kind::Quantity,
+                          kind::Quantities, kind::AnyUnit, kind::Place, kind::Places, kind::Condition,
+                          kind::Formula, kind::Components, kind::Interval, kind::Part, kind::Parts,
+                          kind::Table, kind::Tables, kind::NamedTables>;
 
 /// A rule that holds while another key, read before, has one of some values.
 struct When {

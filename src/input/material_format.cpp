@@ -7,6 +7,7 @@
 #include "input/material_format.hpp"
 
 #include "input/failure_format.hpp"
+#include "input/format_lists.hpp"
 #include "input/model_format.hpp"
 
 namespace riven {
@@ -98,8 +99,37 @@ Key key_of(const LawKey& from, MaterialInput& m) {
   return key;
 }
 
+Format describe(RelaxationInput& r) {
+  return {
+      .doc = "A branch of the series.",
+      .keys = {
+          Key{"share", Quantity{&r.share, dimension::none, {.low = 0, .above_low = true, .high = 1}},
+              "Of the isochoric stress that follows a jump."}
+              .required(),
+          Key{"time", Quantity{&r.time, dimension::time, positive}, "In which it falls to 1/e."}.required()}};
+}
+
+void check_relaxation(const MaterialInput& m, const Case& c, const Check& check) {
+  if (m.relaxation.empty()) return;
+  if (c.model.kind != "finite-elements")
+    check.fail("relaxation", fmt::format("the model \"{}\" has no memory; expected none, or kind = "
+                                         "\"finite-elements\"",
+                                         c.model.kind));
+  double sum = 0;
+  for (const RelaxationInput& branch : m.relaxation) sum += branch.share;
+  if (sum >= 1)
+    check.fail("relaxation", fmt::format("the shares sum to {:g}; expected less than 1, so that a stiffness "
+                                         "stays",
+                                         sum));
+}
+
 void check_material(const MaterialInput& m, const Case& c, const Check& check) {
   check_limits(m, c, check);
+  check_relaxation(m, c, check);
+  if (c.solver.in_time() && c.solver.inertia && !check.given("density"))
+    check.fail("density", fmt::format("missing with solver.method = \"{}\", where inertia counts; expected a "
+                                      "density, such as \"1100 kg/m^3\"",
+                                      c.solver.method));
   if (c.model.kind == "membrane-bond" && m.law != NeoHookean::name)
     check.fail("law", fmt::format("found \"{}\" with model.kind = \"membrane-bond\", whose bonds are "
                                   "neo-Hookean; expected \"neo-hookean\"",
@@ -123,14 +153,18 @@ Format describe(MaterialInput& m, const Case& c) {
           "The constitutive law. The models `pmb` and `lps` take `linear-elastic`, membranes a rubber W(I1, "
           "I2), `correspondence` any; in space and in plane strain a rubber needs `bulk_modulus` there."}
           .required(),
-      Key{"density", Quantity{&m.density, dimension::density, positive}, "Needed where inertia counts."}
-          .required_if(When{"solver.method", &c.solver.method, SolverInput::methods_in_time()})};
+      Key{"density", Quantity{&m.density, dimension::density, positive}, "Needed where inertia counts."}};
   for (const LawKey& key : law_keys()) keys.push_back(key_of(key, m));
   keys.push_back(Key{"bulk_modulus", Quantity{&m.bulk_modulus, dimension::pressure, positive},
                      "Makes a rubber nearly incompressible; without it, it keeps its volume."}
                      .applies(When{"law", &m.law, isochoric_laws()}));
   keys.push_back(Key{"volumetric", Text{&m.volumetric, {"quadratic", "logarithmic"}},
                      "Energy of a change of volume: k/2 (J - 1)^2 unless given, or k/4 (J^2 - 1 - 2 ln J)."}
+                     .applies(When{"law", &m.law, isochoric_laws()}));
+  keys.push_back(Key{"relaxation",
+                     tables(m.relaxation, [](RelaxationInput& r, std::size_t) { return describe(r); }),
+                     "Prony series of the isochoric stress: it relaxes by these shares, with these times. "
+                     "Only finite-elements."}
                      .applies(When{"law", &m.law, isochoric_laws()}));
   for (Key& key : limit_keys(m.critical_stretch, m.critical_energy_release_rate))
     keys.push_back(std::move(key));
@@ -167,6 +201,8 @@ Material make_material(const MaterialInput& in) {
     material.volumetric =
         Volumetric{*in.bulk_modulus, in.volumetric == "logarithmic" ? Volumetric::Form::logarithmic
                                                                     : Volumetric::Form::quadratic};
+  for (const RelaxationInput& branch : in.relaxation)
+    material.relaxation.push_back({branch.share, branch.time});
   const double shear = material.small_strain().shear;
   if (!(shear > 0))
     throw InputError(

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "geometry/stl.hpp"
+#include "input/element_mesh.hpp"
 #include "input/mesh_points.hpp"
 
 namespace riven {
@@ -18,8 +19,6 @@ double length_unit(const std::string& text, const Check& check) {
   return match->unit.factor;
 }
 
-namespace {
-
 void check_thickness(const std::optional<double>& thickness, int dimension, const Check& check) {
   if (dimension == 2 && !thickness)
     check.fail("thickness",
@@ -27,6 +26,15 @@ void check_thickness(const std::optional<double>& thickness, int dimension, cons
   if (dimension == 3 && thickness)
     check.fail("thickness", "belongs to bodies in two dimensions; the mesh has elements in space");
 }
+
+void fill_box(GeometryInput& geometry, const Mesh& mesh) {
+  const Box box = box_around(mesh);
+  geometry.shape = box;
+  const std::array<bool, 6> filled = filled_faces(mesh, box);
+  for (std::size_t face = 0; face < filled.size(); ++face) geometry.open_faces[face] = !filled[face];
+}
+
+namespace {
 
 void read(GeometryInput& geometry, const std::optional<double>& thickness, const Case& c,
           const Check& check) {
@@ -45,10 +53,7 @@ void read(GeometryInput& geometry, const std::optional<double>& thickness, const
   check_thickness(thickness, mesh.dimension(), check);
   geometry.dimension = mesh.dimension();
   geometry.thickness = thickness.value_or(1);
-  const Box box = box_around(mesh);
-  geometry.shape = box;
-  const std::array<bool, 6> filled = filled_faces(mesh, box);
-  for (std::size_t face = 0; face < filled.size(); ++face) geometry.open_faces[face] = !filled[face];
+  fill_box(geometry, mesh);
   in_file([&] {
     auto list = std::make_shared<const PointList>(points_of(mesh, file.string(), geometry.thickness));
     geometry.spacing = list->spacing(geometry.thickness);
@@ -110,23 +115,36 @@ Format describe_surface(GeometryInput& geometry, const Case& c) {
 }
 
 Format describe_mesh(GeometryInput& geometry, const Case& c) {
-  if (!geometry.points) geometry.points.emplace();
-  PointsInput& mesh = *geometry.points;
-  const auto thickness = std::make_shared<std::optional<double>>();
-  if (mesh.list && geometry.dimension == 2) *thickness = geometry.thickness;
+  struct Form {
+    std::string file, unit, as;
+    std::optional<double> thickness;
+  };
+  const auto form = std::make_shared<Form>();
+  if (geometry.points) *form = {geometry.points->file, geometry.points->unit, "points", {}};
+  if (is_element_mesh(geometry)) *form = {geometry.elements->file, geometry.elements->unit, "elements", {}};
+  if (!form->file.empty() && geometry.dimension == 2) form->thickness = geometry.thickness;
   return {
       .doc =
-          "The elements of a mesh in Gmsh's format MSH 4.1 (ASCII or binary): triangles and quadrangles in a "
-          "plane z = const, or tetrahedra, hexahedra, prisms and pyramids; of second order the corners "
-          "count. Each is a point at its centroid, with its volume. `dx` is their mean spacing, as of "
-          "`points`. Physical groups become sets by `group` in `[set.NAME]`. Where the boundary covers a "
-          "whole side of the box around the mesh, that side is an edge for loads and probes.",
-      .keys = {Key{"file", kind::Text{&mesh.file}, "MSH file, relative to the case file."}.required(),
-               Key{"unit", kind::Text{&mesh.unit}, "Of its coordinates, such as `\"mm\"`."}.otherwise(
+          "A mesh in Gmsh's format MSH 4.1 (ASCII or binary), in a plane z = const or in space. Where its "
+          "boundary covers a whole side of the box around it, that side is an edge for loads and probes.",
+      .keys = {Key{"file", kind::Text{&form->file}, "MSH file, relative to the case file."}.required(),
+               Key{"unit", kind::Text{&form->unit}, "Of its coordinates, such as `\"mm\"`."}.otherwise(
                    "\"m\""),
-               Key{"thickness", kind::Quantity{thickness.get(), dimension::length, positive},
+               Key{"as", kind::Text{&form->as, {"points", "elements"}},
+                   "`points`: each element, of any kind, is a point at its centroid, with its volume; `dx` is "
+                   "their mean spacing, as of `points`; physical groups become sets by `group` in `[set.NAME]`. "
+                   "`elements`: finite elements, of one kind: triangles, quadrangles of first or second order, "
+                   "tetrahedra, hexahedra. Physical groups have their names in loads, probes and materials: those of "
+                   "lines (in space: faces) as edges, others as sets."}
+                   .otherwise("\"points\""),
+               Key{"thickness", kind::Quantity{&form->thickness, dimension::length, positive},
                    "Two dimensions only: the body's thickness."}},
-      .finish = [thickness, &geometry, &c](const Check& check) { read(geometry, *thickness, c, check); }};
+      .finish = [form, &geometry, &c](const Check& check) {
+        if (form->as == "elements")
+          return read_element_mesh(geometry, {.file = form->file, .unit = form->unit}, form->thickness, c, check);
+        geometry.points = PointsInput{.file = form->file, .unit = form->unit};
+        read(geometry, form->thickness, c, check);
+      }};
 }
 
 }  // namespace riven

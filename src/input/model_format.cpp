@@ -78,12 +78,15 @@ Format describe(ModelInput& model) {
                "rigid walls (1/4)."}
                .otherwise("\"stress\"")
                .applies(When{"kind", &model.kind, {"pmb", "lps", "correspondence", "finite-elements"}}),
-           Key{"dilatation", Text{&model.dilatation, {"mean", "full"}},
-               "How the change of volume enters an element's energy: by its mean, which does not lock where "
-               "a "
-               "rubber is nearly incompressible, or at every quadrature point. Unless given: `mean` for laws "
-               "with "
-               "a bulk_modulus in plane strain and in space."}
+           Key{"dilatation", Text{&model.dilatation, {"mean", "linear", "full", "selective"}},
+               "The J of which the energy of the change of volume is taken: its `mean` over an element, or a "
+               "`linear` fit (`q8` only), which do not lock where a rubber is nearly incompressible; each "
+               "point's "
+               "own (`full`); or that of the mean gradient, with `q4` that at the centre (`selective`, "
+               "selective "
+               "reduced integration). Unless given: `mean`, with `q8` `linear`, for laws with a bulk_modulus "
+               "in "
+               "plane strain and in space."}
                .applies(kind("finite-elements")),
            Key{"influence", Text{&model.influence, {"inverse", "constant"}},
                "How much a bond counts by its length: as horizon over length, or all the same."}

@@ -26,6 +26,7 @@ class Reader {
   // One for each kind of value.
   void read_value(const kind::Text& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Texts& to, const toml::node& node, const Origin& origin);
+  void read_value(const kind::Flag& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Integer& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Integers& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Quantity& to, const toml::node& node, const Origin& origin);
@@ -34,6 +35,7 @@ class Reader {
   void read_value(const kind::Place& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Places& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Condition& to, const toml::node& node, const Origin& origin);
+  void read_value(const kind::Formula& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Components& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Interval& to, const toml::node& node, const Origin& origin);
   void read_value(const kind::Part& to, const toml::node& node, const Origin& origin);

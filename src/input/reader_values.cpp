@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "base/nearest_name.hpp"
+#include "input/element_mesh.hpp"
 #include "input/reader.hpp"
 
 namespace riven {
@@ -108,6 +109,12 @@ void Reader::read_value(const kind::Texts& to, const toml::node& node, const Ori
   }
 }
 
+void Reader::read_value(const kind::Flag& to, const toml::node& node, const Origin& origin) {
+  const auto* flag = node.as_boolean();
+  if (flag == nullptr) origin.fail(found(node) + "; expected true or false");
+  *to.to = flag->get();
+}
+
 void Reader::read_value(const kind::Integer& to, const toml::node& node, const Origin& origin) {
   *to.to = integer_of(node, to.low, origin);
 }
@@ -195,6 +202,11 @@ ComponentInput Reader::component(const kind::Components& of, const toml::node& n
   return {parse_formula(text, of.dimension, symbols(std::move(variables)), origin)};
 }
 
+void Reader::read_value(const kind::Formula& to, const toml::node& node, const Origin& origin) {
+  *to.to = component({.to = nullptr, .dimension = to.dimension}, node, origin).value;
+  if (!*to.to) origin.fail(fmt::format("found \"free\"; expected {}", named(to.dimension)));
+}
+
 void Reader::read_value(const kind::Components& to, const toml::node& node, const Origin& origin) {
   const auto count = static_cast<std::size_t>(case_.geometry.dimension);
   const toml::array& list =
@@ -233,13 +245,14 @@ Named Reader::part(const toml::node& node, const Origin& origin) const {
   const std::array<std::string_view, 6> edges{"left", "right", "bottom", "top", "back", "front"};
   const bool is_edge = std::find(edges.begin(), edges.end(), name) != edges.end();
   const auto& points = case_.geometry.points;
-  const bool from_cad = case_.geometry.surface || (points && points->is_mesh());
+  const bool from_cad =
+      case_.geometry.surface || is_element_mesh(case_.geometry) || (points && points->is_mesh());
   if (is_edge && from_cad && std::find(known.begin(), known.end(), name) == known.end())
     origin.fail(
         fmt::format("the body has no edge \"{}\": its boundary does not cover all of that side of the box "
                     "around it; known are "
-                    "{}; expected a set",
-                    name, known.empty() ? "none" : listed(known)));
+                    "{}; expected a set{}",
+                    name, known.empty() ? "none" : listed(known), did_you_mean(name, known)));
   if (is_edge && points && !points->is_mesh() && !points->has_edges())
     origin.fail(fmt::format(
         "points have no edge \"{}\" as long as nobody says where the body ends; expected box = {{ size = "

@@ -36,6 +36,7 @@ struct ValueText {
   std::string operator()(const kind::Texts& k) const {
     return k.among.empty() ? "list of texts" : fmt::format("list of {}", code_list(k.among));
   }
+  std::string operator()(const kind::Flag&) const { return "true or false"; }
   std::string operator()(const kind::Integer& k) const {
     return fmt::format("whole number, at least {}", k.low);
   }
@@ -54,6 +55,7 @@ struct ValueText {
     return fmt::format("list of {} or more places, each a list as `[\"1 mm\", \"2 mm\"]`", k.least);
   }
   std::string operator()(const kind::Condition&) const { return "formula, true or false"; }
+  std::string operator()(const kind::Formula&) const { return "formula"; }
   std::string operator()(const kind::Components&) const {
     return "list, per direction a formula or `\"free\"`";
   }

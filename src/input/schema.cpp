@@ -46,6 +46,7 @@ struct ValueSchema {
     schema["uniqueItems"] = true;
     return schema;
   }
+  Json operator()(const kind::Flag&) const { return {{"type", "boolean"}}; }
   Json operator()(const kind::Integer& k) const { return {{"type", "integer"}, {"minimum", k.low}}; }
   Json operator()(const kind::Integers& k) const {
     return list_schema({{"type", "integer"}, {"minimum", k.low}}, 1, 3);
@@ -62,6 +63,9 @@ struct ValueSchema {
     return list_schema(list_schema(quantity_schema(dimension::length, any_number), 1, 3), k.least, 1000);
   }
   Json operator()(const kind::Condition&) const { return {{"type", "string"}}; }
+  Json operator()(const kind::Formula&) const {
+    return {{"anyOf", {Json{{"const", 0}}, Json{{"type", "string"}}}}};
+  }
   Json operator()(const kind::Components&) const {
     return list_schema({{"anyOf", {Json{{"const", 0}}, Json{{"type", "string"}}}}}, 1, 3);
   }

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/nearest_name.hpp"
+#include "input/element_mesh.hpp"
 #include "input/format_lists.hpp"
 #include "input/shape_format.hpp"
 
@@ -19,11 +20,18 @@ using kind::Quantity;
 using kind::Table;
 using kind::Text;
 
+std::vector<std::string> group_names(const GeometryInput& geometry) {
+  std::vector<std::string> names = edge_groups(geometry);
+  for (std::string& name : other_groups(geometry)) names.push_back(std::move(name));
+  if (geometry.points)
+    for (const PointGroup& known : geometry.points->list->groups) names.push_back(known.name);
+  return names;
+}
+
 void check_group(const std::string& group, const GeometryInput& geometry, const Check& check) {
-  if (!geometry.points || !geometry.points->is_mesh())
+  if (!is_element_mesh(geometry) && !(geometry.points && geometry.points->is_mesh()))
     check.fail("group", "belongs to bodies from a mesh (geometry.mesh); expected where or a shape");
-  std::vector<std::string> names;
-  for (const PointGroup& known : geometry.points->list->groups) names.push_back(known.name);
+  const std::vector<std::string> names = group_names(geometry);
   if (std::find(names.begin(), names.end(), group) == names.end())
     check.fail("group", fmt::format("the mesh has no physical group \"{}\"; it has {}{}", group,
                                     names.empty() ? "none" : listed(names), did_you_mean(group, names)));
@@ -145,6 +153,11 @@ void check_set(const SetInput& set, const Case& c, const Check& check) {
   if (std::find(edges.begin(), edges.end(), set.name) != edges.end())
     check.fail("", fmt::format("\"{}\" is the name of an edge; expected another name than {}", set.name,
                                listed(edges)));
+  for (const auto& groups : {edge_groups(c.geometry), other_groups(c.geometry)})
+    if (std::find(groups.begin(), groups.end(), set.name) != groups.end())
+      check.fail("", fmt::format("\"{}\" is the name of a physical group of the mesh, which loads and probes "
+                                 "know by it; expected another name",
+                                 set.name));
   if (set.shape) check_shape(*set.shape, c, check);
   for (const char* key : {"discs", "boxes", "balls"})
     if (check.given(key) && shapes_of(set).empty()) check.fail(key, "found an empty list; expected a shape");
@@ -158,7 +171,7 @@ Format describe(SetInput& set, const Case& c) {
       Key{"group", Text{&set.group},
           "A physical group of the mesh, by its name: the points of its elements, or, of a group of edges or "
           "faces, "
-          "those of the elements that touch it."}};
+          "those of the elements that touch it. Of finite elements its nodes."}};
   for (Key& key : shape_keys(set.shape)) keys.push_back(std::move(key));
   Group one_of{{"where", "group", "disc", "box", "ball"}};
   for (Key& key : list_keys(set, c)) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <numeric>
 
+#include "input/element_mesh.hpp"
 #include "input/elements_format.hpp"
 #include "input/mesh_format.hpp"
 #include "input/points_format.hpp"
@@ -235,10 +236,11 @@ Format describe_geometry(Case& c) {
   GeometryInput& geometry = c.geometry;
   const auto is_box = [&geometry] { return std::holds_alternative<Box>(geometry.shape); };
   const auto has_points = [&geometry] { return geometry.points && !geometry.points->is_mesh(); };
-  const auto has_mesh = [&geometry] { return geometry.points && geometry.points->is_mesh(); };
+  const auto has_mesh = [&geometry] { return is_element_mesh(geometry) || (geometry.points && geometry.points->is_mesh());
+  };
   const auto is_lattice_box = [&geometry, is_box] {
     return is_box() && !geometry.points && !geometry.surface && !is_arch(geometry) &&
-           !is_quadrilateral(geometry);
+           !is_quadrilateral(geometry) && !is_element_mesh(geometry);
   };
   return {
       .doc =
@@ -284,7 +286,7 @@ Format describe_geometry(Case& c) {
         if (check.given("element"))
           check.fail("element",
                      "belongs to finite elements; expected `elements` in the shape, such as box = { ..., "
-                     "elements = [20, 10] }");
+                     "elements = [20, 10] }, or as = \"elements\" in a mesh");
         if (geometry.points && check.given("bonds") && geometry.bonds != "listed")
           check.fail("bonds", "points from a file are on no lattice; expected \"listed\", or nothing");
         if (geometry.points) geometry.bonds = "listed";

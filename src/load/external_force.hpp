@@ -25,6 +25,14 @@ class ExternalForce {
                                     std::span<const double> u, double parameter) const = 0;
   /// Potential energy (J) that the force holds in a state, as a contact does; none unless overridden.
   [[nodiscard]] virtual double held(std::span<const double> /*u*/, double /*parameter*/) const { return 0; }
+  /// Adds upper bounds of the rows' sums of |d(force)/du| (N/m), as Model::stiffness_bound gives them.
+  virtual void stiffness_bound(std::span<const double> /*u*/, double /*parameter*/,
+                               std::span<double> /*bound*/) const {}
+  /// The body goes through this state; all others are only tried. What the force remembers of its way is
+  /// brought up to date, which changes no force in this state.
+  virtual void advance(std::span<const double> /*u*/, double /*parameter*/) {}
+  virtual void save(Snapshot&) const {}
+  virtual void restore(const Snapshot&) {}
 };
 
 using ExternalForces = std::vector<std::shared_ptr<ExternalForce>>;

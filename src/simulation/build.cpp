@@ -14,6 +14,15 @@ std::optional<std::size_t> Simulation::face(const std::string& name) {
   return static_cast<std::size_t>(found - kFaceNames.begin());
 }
 
+std::optional<std::size_t> Simulation::edge(const std::string& name) const {
+  if (mesh == nullptr) return face(name);
+  for (std::size_t group = 0; group < mesh->group.size(); ++group)
+    if (mesh->group[group].name == name) return mesh->face.size() + group;
+  // A group of the mesh may have the name of a face.
+  const bool is_set = std::any_of(sets.begin(), sets.end(), [&](const PointSet& s) { return s.name == name; });
+  return is_set ? std::nullopt : face(name);
+}
+
 const PointSet& find_set(const std::vector<PointSet>& sets, const std::string& name) {
   const auto found =
       std::find_if(sets.begin(), sets.end(), [&](const PointSet& s) { return s.name == name; });
@@ -56,8 +65,7 @@ Simulation build_simulation(const Case& input) {
     build_elements(simulation);
   else
     points = build_points(simulation);
-  simulation.constraints =
-      std::make_unique<Constraints>(simulation.model->dofs(), std::tuple_size_v<decltype(Body::faces)> + 1);
+  simulation.constraints = std::make_unique<Constraints>(simulation.model->dofs(), simulation.edges() + 1);
   build_loads(simulation, points);
   build_initial(simulation, simulation.model->dofs());
   build_impactors(simulation);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "simulation/build_parts.hpp"
+#include "simulation/way.hpp"
 
 namespace riven {
 
@@ -11,52 +12,12 @@ namespace {
 
 constexpr std::size_t kHeld = 6;  // where reactions of what is held are collected
 
-/// The way that a prescribed velocity makes: its integral from time 0, summed once at many times, and from
-/// the last of these on again at each call. It depends on the time alone: a run that goes on later gets the
-/// same.
-class Way {
- public:
-  Way(const Expression& velocity, const Point& place, double until)
-      : velocity_(velocity), place_(place), panel_(until / kPanels) {
-    for (int n = 0; n < kPanels; ++n) sums_.push_back(sums_.back() + piece(n * panel_, (n + 1) * panel_));
-  }
-  double operator()(double time) const {
-    const auto n =
-        static_cast<std::size_t>(std::clamp(std::floor(time / panel_), 0.0, static_cast<double>(kPanels)));
-    const double from = static_cast<double>(n) * panel_;
-    return time == from ? sums_[n] : sums_[n] + piece(from, time);
-  }
-
- private:
-  static constexpr int kPanels = 1000;
-
-  /// By Gauss's rule of three points.
-  [[nodiscard]] double piece(double from, double to) const {
-    const double middle = 0.5 * (from + to), half = 0.5 * (to - from), at = std::sqrt(0.6);
-    return half / 9 * (5 * speed(middle - at * half) + 8 * speed(middle) + 5 * speed(middle + at * half));
-  }
-  [[nodiscard]] double speed(double time) const {
-    return velocity_(Variables{.position = place_, .t = time});
-  }
-
-  Expression velocity_;
-  Point place_;
-  double panel_;
-  std::vector<double> sums_{0.0};
-};
-
 Impactor make_impactor(const ImpactorInput& in, double stiffness) {
   Impactor impactor{.name = in.name, .shape = {}, .mass = in.mass, .stiffness = in.stiffness * stiffness};
-  if (in.sphere) {
+  if (in.sphere)
     impactor.shape = RigidSphere{in.sphere->center, in.sphere->radius};
-    return impactor;
-  }
-  RigidPlane plane{in.plane->point, {}};
-  double square = 0;
-  for (const double n : in.plane->normal) square += n * n;
-  for (std::size_t d = 0; d < in.plane->normal.size(); ++d)
-    plane.normal[d] = in.plane->normal[d] / std::sqrt(square);
-  impactor.shape = plane;
+  else
+    impactor.shape = rigid_plane(*in.plane);
   return impactor;
 }
 
@@ -111,6 +72,14 @@ void check_start(const ImpactorInput& in, const Impactor& impactor, const Simula
 
 }  // namespace
 
+RigidPlane rigid_plane(const PlaneInput& in) {
+  RigidPlane plane{in.point, {}};
+  double square = 0;
+  for (const double n : in.normal) square += n * n;
+  for (std::size_t d = 0; d < in.normal.size(); ++d) plane.normal[d] = in.normal[d] / std::sqrt(square);
+  return plane;
+}
+
 std::unique_ptr<Model> with_contact(const Case& in, std::unique_ptr<PointModel> model,
                                     const ContactModel*& contact) {
   if (!in.contact && in.impactors.empty()) return model;
@@ -128,6 +97,7 @@ std::unique_ptr<Model> with_contact(const Case& in, std::unique_ptr<PointModel> 
 }
 
 void build_impactors(Simulation& simulation) {
+  if (simulation.mesh != nullptr) return build_indenters(simulation);
   for (std::size_t n = 0; n < simulation.input.impactors.size(); ++n) {
     const ImpactorInput& in = simulation.input.impactors[n];
     const Impactor& impactor = simulation.contact->impactors()[n];

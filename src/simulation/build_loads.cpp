@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "load/mirror.hpp"
 #include "simulation/build_parts.hpp"
@@ -39,7 +40,7 @@ class LoadBuilder {
         continue;
       }
       for (const Named& on : load.on) {
-        if (const auto face = Simulation::face(on.text)) {
+        if (const auto face = simulation_.edge(on.text)) {
           displace_face(load, *face, on);
         } else {
           displace_set(load, on);
@@ -55,8 +56,8 @@ class LoadBuilder {
  private:
   void apply_force(const LoadInput& load) {
     for (const Named& on : load.on)
-      if (const auto face = Simulation::face(on.text))
-        pull_face(load, *face, on);
+      if (const auto face = simulation_.edge(on.text))
+        load.pressure ? press_face(load, *face, on) : pull_face(load, *face, on);
       else
         act_on(load, simulation_.set(on.text));
     if (!load.on.empty()) return;
@@ -70,9 +71,8 @@ class LoadBuilder {
   }
 
   void pull_face(const LoadInput& load, std::size_t face, const Named& on) {
-    if (pulled_.test(face))
+    if (!pulled_.insert(face).second)
       throw InputError(on.at, fmt::format("load: the edge \"{}\" has two tractions; expected one", on.text));
-    pulled_.set(face);
     if (mesh_ != nullptr)
       return add_force(load, {face, on.text, nullptr}, shares_of(mesh_->face_shares(face)));
     const double layer = load.layer.value_or(body_.spacing);
@@ -85,6 +85,22 @@ class LoadBuilder {
     add_force(load, {face, on.text, nullptr}, std::move(shares));
   }
 
+  void press_face(const LoadInput& load, std::size_t face, const Named& on) {
+    if (!pressed_.insert(face).second)
+      throw InputError(on.at, fmt::format("load: the edge \"{}\" has two pressures; expected one", on.text));
+    if (face >= mesh_->face.size() && mesh_->group[face - mesh_->face.size()].inside)
+      throw InputError(on.at, fmt::format("load: the edge \"{}\" lies inside the body, and a pressure acts on its "
+                                          "boundary; expected lines or faces with elements on one side only",
+                                          on.text));
+    std::vector<PressedSide> sides;
+    for (const Side& side : mesh_->sides(face)) sides.push_back({side.node});
+    const auto force = std::make_shared<FollowerPressure>(make_function(*load.pressure, simulation_.parameter),
+                                                          std::move(sides), mesh_->node, mesh_->dimension(),
+                                                          mesh_->thickness);
+    simulation_.applied.push_back({face, on.text, nullptr, force});
+    simulation_.external.push_back(force);
+  }
+
   [[nodiscard]] std::vector<LoadShare> shares_of(const std::vector<NodeShare>& nodes) const {
     std::vector<LoadShare> shares;
     for (const NodeShare& share : nodes)
@@ -93,6 +109,10 @@ class LoadBuilder {
   }
 
   void act_on(const LoadInput& load, const PointSet& set) {
+    if (mesh_ != nullptr && set.elements.empty())
+      throw InputError(load.at, fmt::format("load: the set \"{}\" holds no element, and a body force acts on "
+                                            "elements; expected a set with the centres of some",
+                                            set.name));
     if (mesh_ != nullptr)
       return add_force(load, {std::nullopt, set.name, nullptr},
                        shares_of(mesh_->volume_shares(set.elements)));
@@ -155,9 +175,9 @@ class LoadBuilder {
 
   /// Whose reaction the force on a node is: that of the edge across the component, which then has its own
   /// section force, or of all that prescribe it alike.
-  static void share_out(Constraint& constraint) {
-    const auto is_across = [](const PrescribedTerm& term) {
-      return term.load < kFaces && term.load / 2 == static_cast<std::size_t>(term.axis);
+  void share_out(Constraint& constraint) const {
+    const auto is_across = [this](const PrescribedTerm& term) {
+      return term.load < mesh_->edges() && mesh_->axis_across(term.load) == static_cast<std::size_t>(term.axis);
     };
     const auto across = std::count_if(constraint.terms.begin(), constraint.terms.end(), is_across);
     const double share = 1.0 / static_cast<double>(across > 0 ? across : std::ssize(constraint.terms));
@@ -188,7 +208,7 @@ class LoadBuilder {
   /// zero.
   void check_face(std::size_t face) const {
     if (!faces_[face]) return;
-    if (pulled_.test(face))
+    if (pulled_.contains(face))
       throw InputError(face_at_[face],
                        fmt::format("load: the edge \"{}\" has a traction and is moved too; expected one of "
                                    "both, or a set of points to be moved",
@@ -211,7 +231,7 @@ class LoadBuilder {
 
   void displace_set(const LoadInput& load, const Named& on) {
     const PointSet& set = simulation_.set(on.text);
-    if (mesh_ != nullptr) return displace_nodes(load, set.points, kFaces, on);
+    if (mesh_ != nullptr) return displace_nodes(load, set.points, simulation_.edges(), on);
     for (std::size_t axis = 0; axis < load.components().size(); ++axis) {
       const auto& value = load.components()[axis].value;
       if (!value) continue;
@@ -251,7 +271,7 @@ class LoadBuilder {
   const MeshBody* mesh_;
   std::array<std::optional<FaceLoad>, kFaces> faces_;
   std::array<Location, kFaces> face_at_;
-  Faces pulled_;                                // faces with a traction
+  std::set<std::size_t> pulled_, pressed_;      // edges with a traction, a pressure
   std::vector<bool> loaded_;                    // entries that a set's load has taken
   std::map<std::size_t, Constraint> of_nodes_;  // of a mesh, by entry
 };

@@ -43,7 +43,11 @@ void build_initial(Simulation& simulation, std::size_t dofs);
 std::unique_ptr<Model> with_contact(const Case& in, std::unique_ptr<PointModel> model,
                                     const ContactModel*& contact);
 
-/// Prescribes how impactors move, or gives them the velocity that they start with.
+/// Prescribes how impactors move, or gives them the velocity that they start with. On finite elements they
+/// are external forces.
 void build_impactors(Simulation& simulation);
+void build_indenters(Simulation& simulation);
+
+RigidPlane rigid_plane(const PlaneInput& in);
 
 }  // namespace riven

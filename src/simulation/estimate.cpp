@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/text.hpp"
+#include "geometry/mesh.hpp"
 #include "solver/velocity_verlet.hpp"
 
 namespace riven {
@@ -81,8 +82,9 @@ Factors factors(const Case& input) {
           (complex ? 4 : 1) * flops / kFlopsPerSecond + blocks * block * block / kEntriesPerSecond};
 }
 
-/// Nodes of a regular mesh, nearly.
+/// Nodes of a mesh; of a regular one nearly.
 double nodes_of(const GeometryInput& geometry) {
+  if (geometry.elements->mesh) return static_cast<double>(geometry.elements->mesh->node.size());
   double nodes = geometry.element == "q8" ? 3 : 1;
   for (const int along : geometry.elements->along) nodes *= along + 1;
   return nodes;
@@ -103,7 +105,11 @@ double elements_memory(const Case& input) {
   constexpr double kElement = 1200;  // bytes: slopes, forces, fields of the largest kind
   double elements = 1;
   for (const int along : input.geometry.elements->along) elements *= along;
-  const bool sixths = input.geometry.element == "t4";
+  if (const auto& mesh = input.geometry.elements->mesh) {
+    elements = 0;
+    for (const ElementBlock& block : mesh->blocks) elements += static_cast<double>(block.size());
+  }
+  const bool sixths = input.geometry.element == "t4" && !input.geometry.elements->mesh;
   return kProgram + nodes_of(input.geometry) * kNumber * (kSolver * input.geometry.dimension + kOutput + 30) +
          elements * kElement * (sixths ? 3 : 1) + element_factors(input).bytes;
 }
@@ -260,7 +266,8 @@ TimeEstimate time_estimate(const Simulation& simulation) {
         kIterations * std::ceil(solver.until / solver.step.value_or(solver.until / kStepsOfAMotion));
   } else if (simulation.parameter == Parameter::time) {
     const std::vector<double> rest(model.dofs(), 0.0);
-    const double step = solver.safety * stable_step(model, *simulation.constraints, rest);
+    const double step =
+        solver.safety * stable_step(model, *simulation.constraints, rest, simulation.external);
     estimate.evaluations = std::ceil(solver.until / solver.step.value_or(step));
   } else if (solver.method == "newton") {
     constexpr double kIterations = 3.5;  // of a load step

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/nearest_name.hpp"
+#include "geometry/mesh_faults.hpp"
 #include "material/linear_elastic.hpp"
 #include "simulation/free_motions.hpp"
 #include "simulation/materials.hpp"
@@ -99,7 +100,7 @@ void check_step(const Simulation& simulation) {
   start.resize(simulation.model->dofs());
   simulation.constraints->set_parameter(0);
   simulation.constraints->apply(start);
-  const double limit = stable_step(*simulation.model, *simulation.constraints, start);
+  const double limit = stable_step(*simulation.model, *simulation.constraints, start, simulation.external);
   if (!solver.step && solver.until > kMostSteps * solver.safety * limit)
     throw InputError(
         solver.until_at,
@@ -115,6 +116,13 @@ void check_step(const Simulation& simulation) {
 void check_solver(const Simulation& simulation) {
   const Case& input = simulation.input;
   const SolverInput& solver = input.solver;
+  if (solver.control == "arc-length")
+    for (const MaterialInput& material : input.materials)
+      if (material.breaks())
+        throw InputError(solver.at, fmt::format("solver.control: bonds of material.{} break, and a path of "
+                                                "equilibria that can be followed to and fro has none that "
+                                                "do; expected \"load\"",
+                                                material.name));
   const bool needs_tangent = solver.method == "newton" || solver.is_implicit_motion();
   if (!needs_tangent || simulation.model->tangent_parts() > 0) return;
   throw InputError(solver.at,
@@ -125,13 +133,15 @@ void check_solver(const Simulation& simulation) {
 
 /// Elements that nothing holds move at once, or nowhere: statics has no answer.
 void check_supports(const Simulation& simulation) {
-  if (simulation.mesh == nullptr || simulation.parameter == Parameter::time) return;
+  if (simulation.mesh == nullptr) return;
+  const SolverInput& solver = simulation.input.solver;
+  if (solver.in_time() && solver.inertia) return;
   if (const auto motion = free_motion(simulation))
     throw InputError(
         simulation.input.solver.at,
         fmt::format("solver.method: the loads leave the body free to move as a whole, by {}; expected "
-                    "displacements that hold it, or method = \"verlet\"",
-                    *motion));
+                    "displacements that hold it, or {}",
+                    *motion, solver.in_time() ? "inertia = true" : "method = \"verlet\""));
 }
 
 /// Every field asked for must be one that the model has.
@@ -179,6 +189,7 @@ void check_data(const Simulation& simulation) {
   const auto& loads = simulation.input.loads;
   const auto first_that = [&loads](bool (Expression::*does)() const) {
     return std::find_if(loads.begin(), loads.end(), [does](const LoadInput& load) {
+      if (load.pressure) return ((*load.pressure).*does)();
       return std::any_of(load.components().begin(), load.components().end(),
                          [does](const ComponentInput& c) { return c.value && ((*c.value).*does)(); });
     });
@@ -188,13 +199,14 @@ void check_data(const Simulation& simulation) {
   if (first == loads.end()) return;
   std::vector<double> values = marched(simulation);
   if (calls == loads.end()) values.resize(1);
+  const std::vector<double> rest(simulation.model->dofs(), 0.0);
   for (const double value : values) {
     simulation.constraints->set_parameter(value);
     const auto offsets = simulation.constraints->offsets();
     const auto finite = [](double x) { return std::isfinite(x); };
     bool all = std::all_of(offsets.begin(), offsets.end(), finite);
     for (const AppliedForce& applied : simulation.applied) {
-      const Point total = applied.force->total(value);
+      const Point total = applied.total(rest, value);
       all = all && std::all_of(total.begin(), total.end(), finite);
     }
     if (!all)
@@ -416,6 +428,8 @@ std::vector<std::string> warnings(const Simulation& simulation) {
         fmt::format("the model \"{}\" has no energy and holds for the loading \"{}\" only: it is kept for "
                     "comparison; kind = \"membrane\" is the one to use",
                     simulation.input.model.kind, simulation.input.model.loading));
+  if (const auto& elements = simulation.input.geometry.elements; elements && elements->mesh)
+    for (std::string& odd : oddities(*elements->mesh)) list.push_back(std::move(odd));
   if (simulation.input.loads.empty() && simulation.input.initials.empty() &&
       simulation.input.impactors.empty())
     list.emplace_back("there is no load: nothing will move");

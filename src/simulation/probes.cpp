@@ -104,8 +104,8 @@ void Probes::add_columns(const ProbeInput& probe) {
     for (std::size_t a = 0; a < dimension; ++a) columns_.push_back({name + "_" + kAxes[a], unit});
   };
   if (probe.kind == "reaction") vector(probe.name, "N");
-  if (probe.kind == "nominal-stress" && Simulation::face(probe.on.text)) vector(probe.name, "Pa");
-  if (probe.kind == "nominal-stress" && !Simulation::face(probe.on.text))
+  if (probe.kind == "nominal-stress" && simulation_.edge(probe.on.text)) vector(probe.name, "Pa");
+  if (probe.kind == "nominal-stress" && !simulation_.edge(probe.on.text))
     for (const char* component : {"_xx", "_xy", "_yx", "_yy"})
       columns_.push_back({probe.name + component, "Pa"});
   if (probe.kind == "displacement") vector("displacement_" + probe.name, "m");
@@ -117,7 +117,7 @@ void Probes::add_columns(const ProbeInput& probe) {
   if (probe.kind == "dissipated-energy") columns_.push_back({probe.name, "J"});
   if (probe.kind == "impactor") {
     vector(probe.name + "_position", "m");
-    vector(probe.name + "_velocity", "m/s");
+    if (simulation_.contact != nullptr) vector(probe.name + "_velocity", "m/s");
     vector(probe.name + "_force", "N");
   }
 }
@@ -160,7 +160,7 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
       for (std::size_t a = 0; a < dimension; ++a)
         if (probe.component.empty() || axis_of(probe) == a) values.push_back(vector[a] / divisor);
     };
-    const auto face = Simulation::face(probe.on.text);
+    const auto face = simulation_.edge(probe.on.text);
     if (probe.kind == "reaction")
       add(face ? force_on(*face, state, constraints)
                : reaction_of(simulation_.set(probe.on.text), constraints),
@@ -193,20 +193,25 @@ std::vector<double> Probes::evaluate(const State& state, const Constraints& cons
   return values;
 }
 
-/// What moves the edge, or the traction on it, exerts; an edge of elements may have both.
+/// What moves the edge, or the traction or pressure on it, exerts; an edge of elements may have both.
 Point Probes::force_on(std::size_t face, const State& state, const Constraints& constraints) const {
   Point force = constraints.reaction(face);
   for (const AppliedForce& applied : simulation_.applied)
-    if (applied.face == face) force = moved(force, applied.force->total(state.parameter));
+    if (applied.face == face) force = moved(force, applied.total(state.u, state.parameter));
   return force;
 }
 
-/// Position (m) and velocity (m/s) of an impactor, and the force (N) of the body on it.
-std::array<Point, 3> Probes::impactor_of(const ProbeInput& probe, const State& state) const {
+/// Position (m), in motion of points velocity (m/s) of an impactor, and the force (N) of the body on it.
+std::vector<Point> Probes::impactor_of(const ProbeInput& probe, const State& state) const {
   const std::vector<ImpactorInput>& inputs = simulation_.input.impactors;
   const auto found = std::find_if(inputs.begin(), inputs.end(),
                                   [&](const ImpactorInput& in) { return in.name == probe.impactor; });
   const auto n = static_cast<std::size_t>(found - inputs.begin());
+  if (simulation_.contact == nullptr) {
+    const Indenter& indenter = *simulation_.indenters[n];
+    return {moved(start_of(indenter.settings().shape), indenter.settings().way(state.parameter)),
+            indenter.force_on(state.u, state.parameter)};
+  }
   const ContactModel& contact = *simulation_.contact;
   const Point start = contact.impactors()[n].start();
   Point velocity{};

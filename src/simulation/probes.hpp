@@ -42,7 +42,7 @@ class Probes {
   [[nodiscard]] Point force_on(std::size_t face, const State& state, const Constraints& constraints) const;
   void add_largest(const ProbeInput& probe);
   [[nodiscard]] Point reaction_of(const PointSet& set, const Constraints& constraints) const;
-  [[nodiscard]] std::array<Point, 3> impactor_of(const ProbeInput& probe, const State& state) const;
+  [[nodiscard]] std::vector<Point> impactor_of(const ProbeInput& probe, const State& state) const;
   [[nodiscard]] std::array<double, 9> mean_stress(const PointSet& set, std::span<const double> u) const;
 
   const Simulation& simulation_;

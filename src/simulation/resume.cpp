@@ -68,6 +68,8 @@ std::map<std::string, std::string> decisive_values(const Case& input) {
   if (const auto& points = input.geometry.points)
     values[points->is_mesh() ? "geometry.mesh.file" : "geometry.points.file"] =
         fingerprint(points->list->file);
+  if (const auto& elements = input.geometry.elements; elements && elements->mesh)
+    values["geometry.mesh.file"] = fingerprint(input.file.parent_path() / elements->file);
   for (std::size_t n = 0; n < input.cracks.size(); ++n)
     if (const auto& crack = input.cracks[n].file)
       values[fmt::format("crack.{}.surface.file", n)] = fingerprint(input.file.parent_path() / crack->file);

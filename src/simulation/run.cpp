@@ -18,6 +18,7 @@
 #include "simulation/preflight.hpp"
 #include "simulation/recorder.hpp"
 #include "simulation/resume.hpp"
+#include "solver/arc_length.hpp"
 #include "solver/dynamic_relaxation.hpp"
 #include "solver/generalised_alpha.hpp"
 #include "solver/newton.hpp"
@@ -38,6 +39,8 @@ void fill(const Simulation& simulation, TimeStepSettings& settings) {
   settings.step = in.step;
   settings.tolerance = in.tolerance.value();
   settings.step_tolerance = in.step_tolerance;
+  settings.inertia = in.inertia;
+  if (in.start == "equilibrium") settings.rest_tolerance = in.start_tolerance;
   settings.initial_u = simulation.initial_u;
   settings.initial_v = simulation.initial_v;
   settings.external = simulation.external;
@@ -79,6 +82,8 @@ State solve(const Simulation& simulation, Observer& observer, const Snapshot* fr
                                   .tolerance = in.tolerance.value(),
                                   .max_iterations = in.max_iterations,
                                   .external = simulation.external};
+  if (in.control == "arc-length")
+    return follow_path(*simulation.model, *simulation.constraints, {settings, in.max_steps}, observer, from);
   const auto solve_statics = in.method == "newton" ? newton : relax;
   return solve_statics(*simulation.model, *simulation.constraints, settings, observer, from);
 }
@@ -124,8 +129,10 @@ RunStatus march_on(const Simulation& simulation, Recorder& recorder, Progress& s
 void keep_tables(Case& input, const std::filesystem::path& folder) {
   const bool cracks = std::any_of(input.cracks.begin(), input.cracks.end(),
                                   [](const CrackInput& crack) { return crack.file.has_value(); });
+  auto& elements = input.geometry.elements;
+  const bool meshed = elements && elements->mesh;
   if (!input.tables.empty() || !input.fields.empty() || input.geometry.points || input.geometry.surface ||
-      cracks)
+      meshed || cracks)
     std::filesystem::create_directories(folder / "tables");
   for (std::size_t n = 0; n < input.cracks.size(); ++n)  // no table has such a name
     if (auto& crack = input.cracks[n].file) {
@@ -137,6 +144,11 @@ void keep_tables(Case& input, const std::filesystem::path& folder) {
     const std::string copy = "tables/geometry-surface.stl";
     std::filesystem::copy_file(input.file.parent_path() / surface->file, folder / copy);
     surface->file = copy;
+  }
+  if (meshed) {
+    const std::string copy = "tables/geometry-mesh.msh";
+    std::filesystem::copy_file(input.file.parent_path() / elements->file, folder / copy);
+    elements->file = copy;
   }
   if (input.geometry.points) {
     // No table has this name: formulas could not call it.

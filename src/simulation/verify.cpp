@@ -78,7 +78,7 @@ class Judge {
     const double wanted = expect.value->si;
     verdict.expected = wanted;
     const double deviation = wanted != 0 ? (ours - wanted) / std::abs(wanted) : ours;
-    verdict.deviation = deviation;
+    if (wanted != 0) verdict.deviation = deviation;
     if (expect.tolerance) {
       verdict.met = std::abs(deviation) <= *expect.tolerance;
       verdict.limit = percent(*expect.tolerance);

@@ -28,6 +28,7 @@ FreeForces::FreeForces(Model& model, Constraints& constraints, const ExternalFor
 
 void FreeForces::rescale(const State& state) {
   model_.stiffness_bound(state.u, bound_);
+  for (const auto& external : external_) external->stiffness_bound(state.u, constraints_.parameter(), bound_);
   constraints_.fold(bound_);
   const double rows2 = ordered_sum_of(bound_.size(), [&](std::size_t i) { return bound_[i] * bound_[i]; });
   least_reaction_ = kLeastStrain * model_.spacing() * std::sqrt(rows2);
@@ -56,7 +57,11 @@ void FreeForces::add_external(const State& state) {
 double FreeForces::residual() const {
   const double force2 = ordered_sum_of(force_.size(), [&](std::size_t i) { return force_[i] * force_[i]; });
   if (force2 == 0) return 0;  // and where no bond is left no scale either
-  return std::sqrt(force2) / std::max(constraints_.reaction_norm() + external_norm_, least_reaction_);
+  return std::sqrt(force2) / scale();
+}
+
+double FreeForces::scale() const {
+  return std::max(constraints_.reaction_norm() + external_norm_, least_reaction_);
 }
 
 std::optional<std::string> FreeForces::alarm(const State& state) const {

@@ -29,6 +29,8 @@ class FreeForces {
   /// L2 norm of the force over those of the constraint and the external forces, that of strains of about 1e-6
   /// at least.
   [[nodiscard]] double residual() const;
+  /// What the residual is measured with (N).
+  [[nodiscard]] double scale() const;
   /// What ends a run whatever the solver.
   [[nodiscard]] std::optional<std::string> alarm(const State& state) const;
   /// How far from equilibrium a state is, and where most.

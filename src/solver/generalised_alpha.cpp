@@ -57,6 +57,10 @@ class GeneralisedAlpha final : public TimeStepMethod {
   }
 
   std::optional<std::string> step(const State& from, double end) override;
+  void lead_model_to(double s) override {
+    model_.go_back();
+    model_.go_on(s * h_);
+  }
   void displacement(double s, std::span<double> u) const override;
   void velocity(double s, std::span<double> v) const override;
   [[nodiscard]] double work(double s) const override { return s * step_work_; }
@@ -94,6 +98,12 @@ class GeneralisedAlpha final : public TimeStepMethod {
   [[nodiscard]] bool factor();
   [[nodiscard]] bool search(const std::vector<double>& direction);
   [[nodiscard]] double scale() const { return std::max(scale_, first_residual_); }
+  /// How far from balance the step is, and where most.
+  [[nodiscard]] std::string unrest() const {
+    return fmt::format("a residual of {:.2g} is left (solver.tolerance {:.2g}), the largest force at {}",
+                       residual_norm_ / scale(), tolerance_,
+                       text(model_.place(Watchdog::largest(residual_))));
+  }
   [[nodiscard]] double end_velocity(std::size_t i) const;
 
   Model& model_;
@@ -162,6 +172,7 @@ std::optional<Breakdown> GeneralisedAlpha::evaluate() {
     if (mass_[i] == 0) end_acceleration_[i] = 0;
   }
   std::fill(force_.begin(), force_.end(), 0.0);  // models leave out points without bonds
+  lead_model_to(1);
   if (auto breakdown = model_.internal_force(state_, force_)) return breakdown;
   std::fill(applied_.begin(), applied_.end(), 0.0);
   if (!external_.empty()) {
@@ -201,13 +212,10 @@ std::optional<std::string> GeneralisedAlpha::solve() {
       return std::nullopt;
     const double before = residual_norm_;
     const bool moved = search(direction);
-    if (!moved && fresh)
-      return fmt::format("no way down from a residual of {:.2g} (solver.tolerance {:.2g})",
-                         residual_norm_ / scale(), tolerance_);
+    if (!moved && fresh) return "no way down: " + unrest();
     stale = !moved || (residual_norm_ > kSlow * before && residual_norm_ > tolerance_ * scale());
   }
-  return fmt::format("not converged in {} iterations, a residual of {:.2g} is left (solver.tolerance {:.2g})",
-                     kMostIterations, residual_norm_ / scale(), tolerance_);
+  return fmt::format("not converged in {} iterations: {}", kMostIterations, unrest());
 }
 
 /// New factors, for the state that the iterations have come to. They serve until they are slow.
@@ -217,6 +225,7 @@ bool GeneralisedAlpha::freeze() {
   frozen_time_ = end_;
   frozen_step_ = h_;
   ++evaluations_;
+  lead_model_to(1);
   if (factor()) return true;
   system_.reset();
   frozen_at_.clear();

@@ -49,6 +49,7 @@ Snapshot LoadSteps::save() const {
   work_.save(to);
   constraints_.save(to);
   model_.save(to);
+  for (const auto& external : settings_.external) external->save(to);
   method().save(to);
   return to;
 }
@@ -58,12 +59,14 @@ void LoadSteps::restore(const Snapshot& from) {
   work_.restore(from);
   constraints_.restore(from);
   model_.restore(from);
+  for (const auto& external : settings_.external) external->restore(from);
   method().restore(from);
 }
 
 void LoadSteps::begin() {
   constraints_.set_parameter(settings_.start);
   work_.begin(constraints_, settings_.start);
+  for (const auto& external : settings_.external) external->advance(state_.u, settings_.start);
   offsets_.assign(constraints_.offsets().begin(), constraints_.offsets().end());
   increment_ = settings_.increment;
   skip_reached_targets();
@@ -170,6 +173,7 @@ void LoadSteps::accept() {
   keep_offsets();
   state_.parameter = next_;
   ++state_.steps;
+  for (const auto& external : settings_.external) external->advance(state_.u, next_);
   observer_.reached(state_, constraints_, next_ == settings_.targets[target_]);
   method_ = 0;
   if (broken_) {

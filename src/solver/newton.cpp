@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "solver/dynamic_relaxation.hpp"
 #include "solver/norms.hpp"
@@ -43,13 +42,13 @@ void Newton::begin(const State& state) {
     system_.reset();
   }
   forces_.rescale(state);
-  last_step_ = std::numeric_limits<double>::infinity();
+  steps_.begin();
 }
 
 Iteration Newton::iterate(State& state, long number) {
   if (const auto failure = forces_.evaluate(state)) return {Iteration::Outcome::failed, *failure};
   if (const auto alarm = forces_.alarm(state)) return {Iteration::Outcome::failed, *alarm};
-  if (forces_.residual() <= tolerance_ && last_step_ <= tolerance_) return {Iteration::Outcome::converged};
+  if (forces_.residual() <= tolerance_ && steps_.left() <= tolerance_) return {Iteration::Outcome::converged};
   if (number == kMostIterations)
     return {Iteration::Outcome::failed,
             fmt::format("not converged in {} iterations: {}", number, forces_.unrest(tolerance_))};
@@ -85,8 +84,9 @@ bool Newton::move(State& state, std::span<const double> step) {
   for (int halvings = 0; halvings <= kHalvings; ++halvings, part *= 0.5) {
     for (std::size_t i = 0; i < from.size(); ++i) state.u[i] = from[i] + part * step[i];
     constraints_.apply(state.u);
-    last_step_ = part * norm(step) / (norm(state.u) + least);
-    if (!forces_.evaluate(state) && dot(forces_.values(), step) >= -kOvershoot * slope) return true;
+    if (forces_.evaluate(state) || !(dot(forces_.values(), step) >= -kOvershoot * slope)) continue;
+    steps_.add(part * norm(step) / (norm(state.u) + least), part == 1);
+    return true;
   }
   return false;
 }

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "solver/corrections.hpp"
 #include "solver/load_steps.hpp"
 #include "solver/tangent_system.hpp"
 
@@ -10,8 +11,8 @@ namespace riven {
 /// Newton's method on the model's tangent, as a search for a minimum of the energy: where the tangent is not
 /// positive definite a multiple of its row bounds is added, and steps that overshoot are halved. A small
 /// multiple always is, far below the softness that counts: it keeps still what nothing holds, such as a free
-/// translation. Converged when the residual is within the tolerance and so is the last step, as a part of
-/// the displacements.
+/// translation. Converged when the residual is within the tolerance and so is what the last step has left, as
+/// a part of the displacements.
 class Newton final : public Equilibrium {
  public:
   Newton(Model& model, Constraints& constraints, const LoadStepSettings& settings);
@@ -28,7 +29,7 @@ class Newton final : public Equilibrium {
   template <class Self, class Each>
   static void each_member(Self& self, const Each& each) {
     FreeForces::each_member(self.forces_, each);
-    each("newton.last_step", self.last_step_);
+    Corrections::each_member(self.steps_, "newton.steps", each);
   }
   [[nodiscard]] bool factor(const State& state);
   /// Moves the state along the step, all of it or a part; false if no part will do.
@@ -41,7 +42,7 @@ class Newton final : public Equilibrium {
   FreeForces forces_;
   std::optional<TangentSystem> system_;
   std::vector<double> diagonal_;  // of what is added to the tangent, times the shift (N/m)
-  double last_step_ = 0;          // its norm over that of the displacements
+  Corrections steps_;             // their norms over that of the displacements
   double broken_ = 0;             // energy of the bonds that had broken when the system was made (J)
 };
 

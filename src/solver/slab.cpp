@@ -25,12 +25,13 @@ double integral_to(double s, std::size_t stage, const std::vector<SlabStage>& st
 
 }  // namespace
 
-Slab::Slab(Model& model, Constraints& constraints, SlabScheme scheme, const ExternalForces& external)
+Slab::Slab(Model& model, Constraints& constraints, SlabScheme scheme, const ExternalForces& external,
+           bool inertia)
     : model_(model),
       constraints_(constraints),
       scheme_(std::move(scheme)),
       external_(external),
-      mass_(free_mass(model, constraints)),
+      mass_(inertia ? free_mass(model, constraints) : std::vector<double>(model.dofs(), 0.0)),
       power_(scheme_.stages.size(), 0.0) {
   const std::vector<double> zero(model.dofs(), 0.0);
   for (auto* vector : {&u_, &v_, &internal_, &z_[0], &z_[1], &residual_[0], &residual_[1], &start_internal_,
@@ -92,6 +93,7 @@ std::optional<Breakdown> Slab::evaluate() {
   std::fill(start_internal_.begin(), start_internal_.end(), 0.0);
   row_scale_ = {};
   for (std::size_t q = 0; q < scheme_.stages.size(); ++q) {
+    lead_model_to(q);
     stage(q, state_);
     std::fill(stage_internal_.begin(), stage_internal_.end(), 0.0);  // models leave out points without bonds
     if (auto breakdown = model_.internal_force(state_, stage_internal_)) return breakdown;
@@ -101,6 +103,28 @@ std::optional<Breakdown> Slab::evaluate() {
   residual_norm_ = std::hypot(norm(residual_[0]), norm(residual_[1]));
   residual_scale_ = std::hypot(row_scale_[0], row_scale_[1]);
   return std::nullopt;
+}
+
+void Slab::lead_model_to(std::size_t stage) {
+  if (stage == 0) {
+    model_.go_back();
+    model_.go_on(scheme_.stages[0].s * h_);
+  } else {
+    model_.go_on((scheme_.stages[stage].s - scheme_.stages[stage - 1].s) * h_);
+  }
+}
+
+std::size_t Slab::lead_model_to_time(double s) {
+  model_.go_back();
+  if (!model_.has_memory()) return 0;
+  std::size_t passed = 0;
+  for (; passed < scheme_.stages.size() && scheme_.stages[passed].s < s * (1 - 1e-12); ++passed) {
+    lead_model_to(passed);
+    stage(passed, state_);
+    static_cast<void>(model_.internal_force(state_, stage_internal_));  // as before: it was evaluated
+  }
+  model_.go_on((passed == 0 ? s : s - scheme_.stages[passed - 1].s) * h_);
+  return passed;
 }
 
 void Slab::add_stage(std::size_t number, std::span<const double> internal) {
@@ -184,7 +208,13 @@ void Slab::velocity(double s, std::span<double> v) const {
 double Slab::work(double s) const {
   double work = 0;
   for (std::size_t q = 0; q < power_.size(); ++q) work += integral_to(s, q, scheme_.stages) * power_[q];
-  return h_ * work;
+  work *= h_;
+  // So far what forces do on the body: what they came to hold meanwhile, as contacts do, is from outside too.
+  std::vector<double> u(external_.empty() ? 0 : u_.size());
+  if (!external_.empty()) displacement(s, u);
+  for (const auto& external : external_)
+    work += external->held(u, start_ + s * h_) - external->held(u_, start_);
+  return work;
 }
 
 double Slab::dissipated() const {

@@ -17,7 +17,9 @@ namespace riven {
 /// exactly as all else.
 class Slab {
  public:
-  Slab(Model& model, Constraints& constraints, SlabScheme scheme, const ExternalForces& external);
+  /// `inertia`: without, the body is in equilibrium at all stages.
+  Slab(Model& model, Constraints& constraints, SlabScheme scheme, const ExternalForces& external,
+       bool inertia = true);
 
   /// A slab from a state to the time `end` (s). `internal`: the model's force in that state (N). The
   /// constraints must be at its time; they are left where `end` is.
@@ -30,6 +32,10 @@ class Slab {
 
   /// Forces at all stages and the residual; what is wrong with a stage's state if anything.
   std::optional<Breakdown> evaluate();
+  /// Takes the model's memory to a stage, by way of the one before, whose forces must be the last ones.
+  void lead_model_to(std::size_t stage);
+  /// Takes it to slab time s, by way of all stages before. Returns how many forces that took.
+  std::size_t lead_model_to_time(double s);
   [[nodiscard]] const std::array<std::vector<double>, 2>& residual() const { return residual_; }
   [[nodiscard]] double residual_norm() const { return residual_norm_; }
   /// Norm of what the residual is a difference of (N): inertia, reactions and external forces.

@@ -52,7 +52,7 @@ class SpaceTime final : public TimeStepMethod {
         slab_(model, constraints,
               settings.scheme == SlabKind::two_field ? two_field_scheme()
                                                      : single_field_scheme(settings.gauss_points),
-              settings.external),
+              settings.external, settings.inertia),
         operator_(slab_.scheme()) {}
 
   void restart(const State&, std::span<const double> internal, std::span<const double>) override {
@@ -76,6 +76,7 @@ class SpaceTime final : public TimeStepMethod {
     return solve();
   }
 
+  void lead_model_to(double s) override { evaluations_ += static_cast<long>(slab_.lead_model_to_time(s)); }
   void displacement(double s, std::span<double> u) const override { slab_.displacement(s, u); }
   void velocity(double s, std::span<double> v) const override { slab_.velocity(s, v); }
   [[nodiscard]] double work(double s) const override { return slab_.work(s); }
@@ -94,6 +95,7 @@ class SpaceTime final : public TimeStepMethod {
     each("slab.frozen_at", self.frozen_at_);
     each("slab.frozen_step", self.frozen_step_);
     each("slab.frozen_time", self.frozen_time_);
+    each("slab.frozen_tangent", self.frozen_tangent_);
   }
 
   std::optional<Breakdown> evaluate() {
@@ -106,6 +108,13 @@ class SpaceTime final : public TimeStepMethod {
   [[nodiscard]] bool improve();
   [[nodiscard]] double scale() const {
     return std::max({slab_.residual_scale(), first_residual_, least_force_});
+  }
+
+  /// How far from balance the slab is, and where most.
+  [[nodiscard]] std::string unrest() const {
+    return fmt::format("a residual of {:.2g} is left (solver.tolerance {:.2g}), the largest force at {}",
+                       slab_.residual_norm() / scale(), tolerance_,
+                       text(model_.place(Watchdog::largest(slab_.residual()[1]))));
   }
 
   void freeze();
@@ -125,9 +134,11 @@ class SpaceTime final : public TimeStepMethod {
   SlabOperator operator_;
   std::vector<double> internal_;  // in the state that the step starts from
   std::optional<TangentMatrix> tangent_;
-  std::vector<double> unknown_mass_;                 // of the tangent's rows (kg)
-  std::vector<double> frozen_at_;                    // state of the operator's tangent; empty: there is none
-  double frozen_step_ = 0, frozen_time_ = 0;         // s
+  std::vector<double> unknown_mass_;          // of the tangent's rows (kg)
+  std::vector<double> frozen_at_;             // state of the operator's tangent; empty: there is none
+  double frozen_step_ = 0, frozen_time_ = 0;  // s
+  // Its values, where the model's memory of that time is gone when a run is resumed.
+  std::vector<double> frozen_tangent_;
   double least_force_ = 0;                           // N
   double first_residual_ = 0;                        // of the slab (N)
   bool fresh_ = false, exact_ = false;               // the operator is this slab's; the Jacobian is exact
@@ -152,12 +163,9 @@ std::optional<std::string> SpaceTime::solve() {
     const double before = slab_.residual_norm();
     const bool moved = search(direction), slow = slab_.residual_norm() > kSlow * before;
     if (moved && (!slow || slab_.residual_norm() <= tolerance_ * scale())) continue;
-    if (!improve() && !moved)
-      return fmt::format("no way down from a residual of {:.2g} (solver.tolerance {:.2g})",
-                         slab_.residual_norm() / scale(), tolerance_);
+    if (!improve() && !moved) return "no way down: " + unrest();
   }
-  return fmt::format("not converged in {} iterations, a residual of {:.2g} is left (solver.tolerance {:.2g})",
-                     kMostIterations, slab_.residual_norm() / scale(), tolerance_);
+  return fmt::format("not converged in {} iterations: {}", kMostIterations, unrest());
 }
 
 /// Goes along a direction, all of it or a part that lessens the residual. If none does, everything stays.
@@ -192,20 +200,24 @@ void SpaceTime::freeze() {
   slab_.displacement(0.5, frozen_at_);
   ++evaluations_;
   frozen_time_ = slab_.time(0.5);
+  evaluations_ += static_cast<long>(slab_.lead_model_to_time(0.5));
   if (!assemble(frozen_at_, frozen_time_)) {
     slab_.displacement(0, frozen_at_);
+    model_.go_back();
     frozen_time_ = slab_.time(0);
     ++evaluations_;
     static_cast<void>(assemble(frozen_at_, frozen_time_));
   }
   frozen_step_ = slab_.length();
   fresh_ = true;
+  if (model_.has_memory()) frozen_tangent_ = tangent_->matrix().value;
   factor();
 }
 
 /// As `freeze` left it, after a run has been resumed.
 void SpaceTime::thaw() {
   static_cast<void>(assemble(frozen_at_, frozen_time_));
+  if (!frozen_tangent_.empty()) tangent_->set_values(frozen_tangent_);
   factor();
 }
 
@@ -256,6 +268,7 @@ void SpaceTime::find_exact(std::span<double> x) {
   stage_tangents_.clear();
   for (std::size_t q = 0; q < slab_.scheme().stages.size(); ++q) {
     slab_.stage(q, state);
+    slab_.lead_model_to(q);
     ++evaluations_;
     static_cast<void>(assemble(state, slab_.time(slab_.scheme().stages[q].s)));
     stage_tangents_.push_back(tangent_->matrix().value);

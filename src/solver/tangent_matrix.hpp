@@ -25,6 +25,8 @@ class TangentMatrix {
   void assemble(std::span<const double> u, const ExternalForces& external, double parameter);
 
   [[nodiscard]] const SymmetricMatrix& matrix() const { return matrix_; }
+  /// Those of an earlier `matrix()`.
+  void set_values(std::span<const double> values) { matrix_.value.assign(values.begin(), values.end()); }
   /// To add to the diagonal in place, and take it away again.
   [[nodiscard]] double& diagonal(std::size_t row) { return matrix_.value[matrix_.begin[row + 1] - 1]; }
   /// Entries of the state that the rows stand for.

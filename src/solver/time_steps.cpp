@@ -7,6 +7,7 @@
 
 #include "base/parallel.hpp"
 #include "solver/norms.hpp"
+#include "solver/rest.hpp"
 #include "solver/velocity_verlet.hpp"
 
 namespace riven {
@@ -23,6 +24,7 @@ constexpr double kGrowth = 16;
 constexpr int kMostDoublings = 3;     // at a time
 constexpr long kPatience = 4;         // steps after one that was too long
 constexpr double kFirstStep = 2;      // stable steps of explicit methods
+constexpr double kFirstPart = 1e-3;   // without inertia: of the run
 constexpr double kLongestStep = 0.1;  // of the run
 
 }  // namespace
@@ -35,7 +37,7 @@ TimeSteps::TimeSteps(Model& model, Constraints& constraints, const TimeStepSetti
       method_(std::move(method)),
       observer_(observer),
       watchdog_(model),
-      mass_(free_mass(model, constraints)),
+      mass_(settings.inertia ? free_mass(model, constraints) : std::vector<double>(model.dofs(), 0.0)),
       internal_(model.dofs(), 0.0),
       force_(model.dofs(), 0.0),
       outputs_(settings.every, settings.until),
@@ -64,6 +66,7 @@ Snapshot TimeSteps::save() const {
   method_->save(to);
   constraints_.save(to);
   model_.save(to);
+  for (const auto& external : settings_.external) external->save(to);
   return to;
 }
 
@@ -71,6 +74,7 @@ void TimeSteps::restore(const Snapshot& from) {
   each_member(*this, from.restoring());
   constraints_.restore(from);
   model_.restore(from);
+  for (const auto& external : settings_.external) external->restore(from);
   method_->restore(from);
 }
 
@@ -82,10 +86,17 @@ void TimeSteps::begin() {
     if (mass_[i] == 0) state_.v[i] = 0;
   constraints_.set_parameter(0);
   constraints_.apply(state_.u);
+  if (settings_.rest_tolerance) {
+    bring_to_rest(model_, constraints_, settings_.external, *settings_.rest_tolerance, state_);
+    std::fill(state_.v.begin(), state_.v.end(), 0.0);
+  }
   if (const auto breakdown = evaluate(state_)) fail(state_, text(*breakdown));
+  for (const auto& external : settings_.external) external->advance(state_.u, 0);
   break_bonds();
   method_->restart(state_, internal_, force_);
-  wanted_ = settings_.step.value_or(kFirstStep * stable_step(model_, constraints_, state_.u));
+  wanted_ = settings_.step.value_or(
+      settings_.inertia ? kFirstStep * stable_step(model_, constraints_, state_.u, settings_.external)
+                        : kFirstPart * settings_.until);
   least_ = kLeastStep * wanted_;
   balance(state_);
   state_.energy.external_work = state_.energy.total();
@@ -123,6 +134,7 @@ std::optional<std::string> TimeSteps::attempt(State& end) {
   method_->velocity(1, end.v);
   end.energy.external_work += method_->work(1);
   end.energy.damped += method_->dissipated();
+  method_->lead_model_to(1);
   if (const auto breakdown = evaluate(end)) return text(*breakdown);
   if (const auto breakdown = watchdog_.inspect(constraints_, end.u, force_, end.v)) return text(*breakdown);
   balance(end);
@@ -182,6 +194,7 @@ void TimeSteps::show(const State& from, const State& end, const Constraints::Pre
     constraints_.set(start);
     constraints_.set_parameter(time);
     constraints_.apply(state.u);
+    method_->lead_model_to(s);
     if (const auto breakdown = evaluate(state)) fail(state, text(*breakdown));
     balance(state);
     const bool output = outputs_.due(time);
@@ -192,6 +205,7 @@ void TimeSteps::show(const State& from, const State& end, const Constraints::Pre
   constraints_.set(at_end);
   if (!inside) return;
   State again = end;  // the forces there are what goes on
+  method_->lead_model_to(1);
   static_cast<void>(evaluate(again));
 }
 
@@ -200,6 +214,7 @@ void TimeSteps::accept(State end) {
   check_energy();
   const bool output = outputs_.due(state_.parameter), row = history_.due(state_.parameter);
   if (output) check_points(state_);
+  for (const auto& external : settings_.external) external->advance(state_.u, state_.parameter);
   if (break_bonds()) {
     balance(state_);
     method_->restart(state_, internal_, force_);
@@ -239,8 +254,10 @@ void TimeSteps::balance(State& state) {
       ordered_sum_of(mass_.size(), [&](std::size_t i) { return 0.5 * mass_[i] * state.v[i] * state.v[i]; });
   energy.strain = model_.strain_energy(state.u) - rest_energy_;
   energy.dissipated = model_.dissipated_energy();
+  energy.held = 0;
+  for (const auto& external : settings_.external) energy.held += external->held(state.u, state.parameter);
   energy.largest = std::max({energy.largest, energy.kinetic, std::abs(energy.strain), energy.dissipated,
-                             energy.damped, std::abs(energy.external_work)});
+                             energy.damped, std::abs(energy.held), std::abs(energy.external_work)});
 }
 
 /// Energy of motions too small to tell from rounding.

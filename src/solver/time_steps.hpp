@@ -21,6 +21,10 @@ struct TimeStepSettings {
   double tolerance = 1e-8;     // of residual and increment, each over its own scale
   // Largest energy that a method takes in a step, over that of the motion, where steps are chosen.
   double step_tolerance = 1e-4;
+  bool inertia = true;  // without, the body is in equilibrium at any time
+  // Of the equilibrium to start in under the loads of time 0, as LoadStepSettings::tolerance; nothing: the
+  // initial state.
+  std::optional<double> rest_tolerance;
   std::vector<double> initial_u, initial_v;  // m, m/s, of the free entries; empty: 0
   ExternalForces external;
 };
@@ -39,6 +43,8 @@ class TimeStepMethod {
   /// The last step has been taken; forces as for `restart`.
   virtual void accept(std::span<const double> internal, std::span<const double> force) = 0;
 
+  /// Takes the model's memory to a part s of the last step, for the forces there.
+  virtual void lead_model_to(double s) = 0;
   /// In the last step, at a part s of it in [0, 1].
   virtual void displacement(double s, std::span<double> u) const = 0;
   virtual void velocity(double s, std::span<double> v) const = 0;

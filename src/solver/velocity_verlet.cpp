@@ -104,6 +104,7 @@ class Verlet {
     work_.save(to);
     constraints_.save(to);
     model_.save(to);
+    for (const auto& external : settings_.external) external->save(to);
     return to;
   }
   void restore(const Snapshot& from) {
@@ -111,6 +112,7 @@ class Verlet {
     work_.restore(from);
     constraints_.restore(from);
     model_.restore(from);
+    for (const auto& external : settings_.external) external->restore(from);
   }
 
   [[nodiscard]] bool unfinished() const { return state_.parameter < settings_.until * (1 - 1e-12); }
@@ -126,6 +128,7 @@ class Verlet {
     constraints_.apply(state_.u);
     if (settings_.rest_tolerance) come_to_rest();
     evaluate();
+    for (const auto& external : settings_.external) external->advance(state_.u, 0);
     break_bonds();
     if (settings_.rest_tolerance && model_.dissipated_energy() > 0)
       throw SolverFailure(
@@ -212,12 +215,15 @@ class Verlet {
     ++state_.steps;
     constraints_.set_parameter(time);
     constraints_.apply(state_.u);
+    model_.go_on(dt);
     evaluate();
     kick(0.5 * dt, 0);
     damp(0.5 * dt);
     state_.energy.external_work += work_.since_last_call(constraints_, time);
-    for (const auto& external : settings_.external)
+    for (const auto& external : settings_.external) {
       state_.energy.external_work += external->work(u_before_, before, state_.u, time);
+      external->advance(state_.u, time);
+    }
     break_bonds();
   }
 
@@ -275,7 +281,7 @@ class Verlet {
   }
 
   void estimate_step() {
-    const double limit = stable_step(model_, constraints_, state_.u);
+    const double limit = stable_step(model_, constraints_, state_.u, settings_.external, state_.parameter);
     estimate_interval_ = limit < kMuchShorter * limit_
                              ? kLeastEstimateInterval
                              : std::min(2 * estimate_interval_, kMostEstimateInterval);
@@ -385,9 +391,11 @@ class Verlet {
 
 }  // namespace
 
-double stable_step(Model& model, const Constraints& constraints, std::span<const double> u) {
+double stable_step(Model& model, const Constraints& constraints, std::span<const double> u,
+                   const ExternalForces& external, double time) {
   std::vector<double> bound(model.dofs()), mass(model.dofs());
   model.stiffness_bound(u, bound);
+  for (const auto& force : external) force->stiffness_bound(u, time, bound);
   constraints.fold(bound);
   model.mass(mass);
   double largest = 0;  // bound of the highest squared frequency

@@ -26,7 +26,8 @@ struct VelocityVerletSettings {
 };
 
 /// Largest stable step of Verlet's method (s) in a state, from the bound of the tangent's rows.
-double stable_step(Model& model, const Constraints& constraints, std::span<const double> u);
+double stable_step(Model& model, const Constraints& constraints, std::span<const double> u,
+                   const ExternalForces& external = {}, double time = 0);
 
 /// Marches a model through time by velocity Verlet (peridynamics theory, section 8), from its initial state
 /// or from where a snapshot was taken. Prescribed entries move as they are told; they carry no inertia of

@@ -123,7 +123,7 @@ class Check(ProgramTest):
     def test_time_of_a_run_in_time(self):
         case = self.write("moving.toml", MOVING)
         text = self.command("check", case).stdout
-        limit = self.value(text, r"^# stable step: ([\d.e-]+) s at rest$")
+        limit = self.value(text, r"^# stable step of explicit methods: ([\d.e-]+) s at rest$")
         steps = self.value(text, r"\(([\d.e+]+) force evaluations")
         self.assertAlmostEqual(steps * 0.8 * limit / 4e-3, 1, delta=0.02)
         self.command("run", case)

@@ -1,10 +1,12 @@
 """Finite elements as users meet them: closed forms by every element and solver, loads, cells of the results, messages."""
 
 import json
+import re
 import unittest
 import xml.etree.ElementTree as ElementTree
+from math import exp
 
-from program import BOX, PLAIN, ProgramTest, history, replaced
+from program import BOX, PLAIN, ProgramTest, history, replaced, series
 
 ELEMENTS = 'box = { size = ["0.2 m", "0.2 m"], thickness = "10 mm", elements = [4, 3] }'
 SHEET = replaced(replaced(PLAIN, BOX, ELEMENTS), 'horizon = "3 dx"\n', "") + '\n[model]\nkind = "finite-elements"\n'
@@ -54,6 +56,52 @@ kind = "displacement"
 component = "y"
 at = ["40 mm", "20 mm", "30 mm"]
 """
+
+ARCH = """title = "Snapping arch"
+
+[geometry]
+arch = { span = "100 mm", rise = "10 mm", depth = "2 mm", thickness = "1 mm", elements = [20, 2] }
+element = "q8"
+
+[model]
+kind = "finite-elements"
+
+[material.rubber]
+law = "neo-hookean"
+c10 = "1 MPa"
+density = "1000 kg/m^3"
+
+[set.head]
+where = "abs(x) < 5 mm"
+
+[[load]]
+on = ["left", "right"]
+displacement = [0, 0]
+
+[[load]]
+on = "head"
+body_force = [0, "-1e4 N/m^3 * (stretch - 1)"]
+
+[solver]
+method = "newton"
+control = "arc-length"
+stretch = [30, 60]
+increment = 2
+tolerance = 1e-8
+
+[[probe]]
+name = "crown"
+kind = "displacement"
+component = "y"
+at = [0, "10 mm"]
+"""
+
+
+RELAXING = replaced(SHEET, 'youngs_modulus = "6 MPa"\n',
+                    'youngs_modulus = "6 MPa"\nrelaxation = [{ share = 0.3, time = "0.5 s" }, { share = 0.2, time = "2 s" }]\n')
+RELAXING = replaced(RELAXING, '["(stretch - 1)*x", "(stretch - 1)*y"]', '["0.4*x", "0.4*y"]')
+RELAXING = replaced(RELAXING, 'method = "newton"\ntolerance = 1e-9\nstretch = [1.2, 1.4]',
+                    'method = "space-time"\ninertia = false\nuntil = "1 s"\nstep = "0.25 s"')
 
 
 def uniaxial(stretch):
@@ -118,6 +166,30 @@ class FiniteElements(ProgramTest):
             self.assertLess(abs(energy["balance_error"]), 3e-4)
             self.assertGreater(energy["strain"]["value"] if isinstance(energy["strain"], dict) else energy["strain"], 0)
 
+    def test_a_path_goes_through_its_limit_points(self):
+        said = self.command("run", self.write("arch.toml", ARCH), "-o", "arch").stderr
+        limits = [float(text) for text in re.findall(r"limit point at stretch ([0-9.]+)", said)]
+        self.assertEqual(len(limits), 2)
+        rows = history(self.top / "arch")[1]
+        crowns = [row[1] for row in rows]
+        self.assertEqual(crowns, sorted(crowns, reverse=True))  # it goes down all the way
+        loads = [row[0] for row in rows]
+        top = next(n for n in range(len(rows)) if loads[n + 1] < loads[n])
+        bottom = min(range(top, len(rows)), key=lambda n: loads[n])
+        self.assertAlmostEqual(loads[top], limits[0], delta=0.1)
+        self.assertAlmostEqual(loads[bottom], limits[1], delta=0.1)
+        self.assertEqual([value for value, _ in series(self.top / "arch")], [30, 60])
+        summary = json.loads((self.top / "arch" / "summary.json").read_text())
+        self.assertLess(abs(summary["energy"]["balance_error"]), 1e-3)
+
+    def test_a_path_ends_after_its_steps(self):
+        text = replaced(ARCH, "increment = 2", "increment = 2\nmax_steps = 5")
+        said = self.command("run", self.write("arch.toml", text), "-o", "arch").stderr
+        self.assertIn("before it has reached 30", said)
+        rows = history(self.top / "arch")[1]
+        self.assertEqual(len(rows), 5)
+        self.assertEqual([value for value, _ in series(self.top / "arch")], [rows[-1][0]])
+
     def test_results_have_cells_and_are_drawn(self):
         for name, text, cells, kind in [("sheet", SHEET, 12, 9), ("block", BLOCK, 12, 12)]:
             self.last(text, name)
@@ -157,6 +229,60 @@ class FiniteElements(ProgramTest):
         expected = 2e6 * (1.4 - 1.4**-2) * 0.2 * 0.01 * (1 + 9 * 2 / 3)
         self.assertAlmostEqual(self.last(two, "two")[1] / expected, 1, delta=1e-8)
 
+    def test_a_rubber_relaxes_and_is_checked_back(self):
+        said = self.command("check", self.write("case.toml", RELAXING)).stdout
+        self.assertIn("[[material.rubber.relaxation]]\nshare = 0.3\n", said)
+        again = self.command("check", self.write("again.toml", said)).stdout
+        self.assertEqual([line for line in said.splitlines() if "time:" not in line],
+                         [line for line in again.splitlines() if "time:" not in line])
+        for row in (self.last(said, "written"), self.last(RELAXING, "relaxing")):
+            # An incompressible sheet, stretched at time 0: 2 C10 (l - 1/l^5) at once, the shares fall.
+            elastic = 2e6 * (1.4 - 1.4**-5) * 0.2 * 0.01
+            self.assertAlmostEqual(row[1] / elastic, 0.5 + 0.3 * exp(-1 / 0.5) + 0.2 * exp(-1 / 2), delta=1e-7)
+        self.assertEqual(history(self.top / "relaxing")[1][0][0], 0)
+
+    def test_relaxation_and_rest_are_refused_where_they_make_no_sense(self):
+        for old, new, message in [
+                ("share = 0.2", "share = 0.7", "material.rubber.relaxation: the shares sum to 1;"),
+                ("share = 0.2", "share = 1.7", "found 1.7; expected a value"),
+                ('"2 s"', '"0 s"', "found 0 s; expected a value above 0"),
+                ("inertia = false", 'inertia = "no"', 'found "no"; expected true or false'),
+                ("inertia = false", 'inertia = false\nstart = "initial"', "without inertia the body starts in equilibrium"),
+                ('["0.4*x", "0.4*y"]', '["free", "0.4*y"]', "free to move as a whole, by a translation along x; "
+                 "expected displacements that hold it, or inertia = true")]:
+            path = self.write("case.toml", replaced(RELAXING, old, new))
+            self.assertIn(message, self.refused("check", path))
+        light = replaced(RELAXING, 'density = "1100 kg/m^3"\n', "")
+        self.command("check", self.write("light.toml", light))
+        said = self.refused("check", self.write("moving.toml", replaced(light, "inertia = false\n", "")))
+        self.assertIn("material.rubber.density: missing with solver.method", said)
+        points = replaced(PLAIN, 'youngs_modulus = "6 MPa"\n', 'youngs_modulus = "6 MPa"\nrelaxation = [{ share = 0.5, time = "1 s" }]\n')
+        self.assertIn('the model "membrane" has no memory', self.refused("check", self.write("points.toml", points)))
+
+    def test_impactors_push(self):
+        text = replaced(SHEET, 'on = ["left", "right", "bottom", "top"]\ndisplacement = ["(stretch - 1)*x", "(stretch - 1)*y"]',
+                        'on = "bottom"\ndisplacement = ["free", 0]\n\n[[load]]\non = "left"\ndisplacement = [0, "free"]')
+        text = replaced(text, 'on = "right"', 'on = "bottom"')
+        text += ('\n[[impactor]]\nname = "lid"\nplane = { point = [0, "0.1 m"], normal = [0, -1] }\n'
+                 'displacement = [0, "(1 - stretch) * 0.2 m"]\nstiffness = 1000\n'
+                 '\n[[probe]]\nname = "lid"\nkind = "impactor"\nimpactor = "lid"\n')
+        case = self.write("lid.toml", replaced(text, "stretch = [1.2, 1.4]", "stretch = [1.2]"))
+        said = self.command("check", case).stdout
+        self.assertIn("# impactor lid: plane, frictionless, 5 nodes face it", said)
+        again = self.command("check", self.write("again.toml", said)).stdout
+        self.assertEqual([line for line in said.splitlines() if "time:" not in line],
+                         [line for line in again.splitlines() if "time:" not in line])
+        self.command("run", case, "-o", "lid")
+        columns, rows = history(self.top / "lid")
+        at = {name.split(" ")[0]: n for n, name in enumerate(columns)}
+        self.assertNotIn("lid_velocity_x", at)
+        last = rows[-1]
+        self.assertAlmostEqual(last[at["lid_position_y"]], 0.06, delta=1e-15)
+        force = 2e6 * (0.8**-2 - 0.8) * 0.2 * 0.01  # uniaxial compression
+        self.assertAlmostEqual(last[at["lid_force_y"]] / force, 1, delta=2e-3)  # the penalty lets it in by 0.1 %
+        self.assertAlmostEqual(last[at["force_y"]] / last[at["lid_force_y"]], 1, delta=1e-7)
+        self.assertAlmostEqual(last[at["lid_force_x"]], 0, delta=1e-9 * force)
+
     def test_free_motions_are_named(self):
         free = replaced(SHEET, 'on = ["left", "right", "bottom", "top"]', "on = {}")
         for on, values, motion in [
@@ -166,6 +292,30 @@ class FiniteElements(ProgramTest):
             text = replaced(replaced(free, "on = {}", f"on = {on}"), '["(stretch - 1)*x", "(stretch - 1)*y"]', values)
             text += '\n[set.corner]\nwhere = "x < -99 mm && y < -99 mm"\n'
             self.assertIn(motion, self.refused("run", self.write("case.toml", text)))
+
+    def test_elements_that_invert_are_named(self):
+        # A block that is pushed through its own support: the right end would pass the left one.
+        text = replaced(BLOCK, 'size = ["40 mm", "20 mm", "30 mm"], from = [0, 0, 0], elements = [3, 2, 2]',
+                        'size = ["40 mm", "20 mm"], from = [0, 0], thickness = "1 mm", elements = [4, 2]')
+        text = replaced(text.split("[[load]]")[0], 'element = "h8"\n', "").replace('"finite-elements"', '"finite-elements"\nplane = "strain"')
+        text += ('[[load]]\non = "left"\ndisplacement = [0, 0]\n\n[[load]]\non = "right"\ndisplacement = ["-45 mm * LOAD", 0]\n\n[solver]\nMETHOD\n')
+        text += '\n[[probe]]\nname = "force"\nkind = "reaction"\non = "right"\n'
+        statics = text.replace("LOAD", "(stretch - 1)").replace("METHOD", 'method = "newton"\nstretch = [1.2, 2]')
+        motion = text.replace("LOAD", "t / 10 ms").replace("METHOD", 'method = "METHOD"\nuntil = "10 ms"') + '\n[output]\nevery = "1 ms"\n'
+        step = 'until = "10 ms"\nstep = "0.1 ms"'
+        for name, case, when, advice in [
+                ("newton", statics, r"no equilibrium beyond 1\.\d+", "a finer mesh"),
+                ("relaxation", statics.replace('"newton"', '"dynamic-relaxation"'), r"no equilibrium beyond 1\.\d+", "a finer mesh"),
+                ("verlet", motion.replace("METHOD", "verlet"), r"at t = 0\.00\d+ s, step", "a smaller solver.safety"),
+                ("slabs", motion.replace("METHOD", "space-time").replace('until = "10 ms"', step), r"at t = 0\.00\d+ s, step", "a smaller solver.step"),
+                ("alpha", motion.replace("METHOD", "generalised-alpha").replace('until = "10 ms"', step), r"at t = 0\.00\d+ s, step",
+                 "a smaller solver.step")]:
+            said = self.command("run", self.write(f"{name}.toml", case), "-o", name, expect=3).stderr
+            self.assertRegex(said, when + r".*element \d+ is turned inside out at \(\S+, \S+, \S+\) m.* try .*" + advice)
+            self.assertRegex(said, rf"The last good state, (time|stretch) [\d.e-]+, is in {name}")
+            self.assertTrue((self.top / name / "fields/0000.vtu").exists())
+            self.assertEqual(self.summary(name)["status"], "failed")
+            self.assertGreater(len(history(self.top / name)[1]), 1)
 
 
 if __name__ == "__main__":

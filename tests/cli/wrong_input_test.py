@@ -55,6 +55,8 @@ FREE = replaced(FREE, 'on = "right"', 'on = "all"') + SET.format(name="all", whe
 
 ELEMENTS = 'box = { size = ["0.2 m", "0.2 m"], thickness = "10 mm", elements = [4, 3] }'
 MESHED = replaced(replaced(PLAIN, BOX, ELEMENTS), 'horizon = "3 dx"\n', "") + '\n[model]\nkind = "finite-elements"\n'
+PUNCH = MESHED + ('\n[[impactor]]\nname = "punch"\nflat = { from = ["-50 mm", "101 mm"], to = ["50 mm", "101 mm"] }\n'
+                  'displacement = [0, "(1 - stretch) * 10 mm"]\n')
 
 # case, what is replaced, by what, the key's line as a fragment (the message must name its line), part of the message
 MISTAKES = [
@@ -75,6 +77,23 @@ MISTAKES = [
     ("edges that do not agree", MESHED, "[solver]", '[[load]]\non = "corner"\ndisplacement = ["1 mm", "free"]\n\n[set.corner]\nwhere = "x + y > 199 mm"\n\n[solver]', 'on = "corner"', "expected equal displacements"),
     ("an arch too deep", MESHED, ELEMENTS, 'arch = { span = "100 mm", rise = "50 mm", depth = "110 mm", thickness = "1 mm", elements = [40, 2] }', "arch", "twice the radius"),
     ("corners clockwise", MESHED, ELEMENTS, 'quadrilateral = { corners = [[0, 0], [0, "1 m"], ["1 m", "1 m"], ["1 m", 0]], thickness = "1 mm", elements = [4, 2] }', "corners", "counterclockwise"),
+    ("a flat of no width", PUNCH, 'to = ["50 mm"', 'to = ["-50 mm"', "flat =", "two places"),
+    ("a flat on points", IMPACT, "sphere = {", 'flat = { from = [0, 0, 0], to = ["1 mm", 0, 0] }\n# ', "flat =", 'belongs to the model "finite-elements"'),
+    ("a flat the wrong way round", PUNCH, 'from = ["-50 mm", "101 mm"], to = ["50 mm", "101 mm"]', 'from = ["50 mm", "101 mm"], to = ["-50 mm", "101 mm"]',
+     "[[impactor]]", "the body to the right of the way from"),
+    ("an impactor that starts inside", PUNCH, "flat = {", 'sphere = { center = [0, 0], radius = "1 mm" }\n# ', "[[impactor]]", "no side of the mesh faces it"),
+    ("a flat in the body", PUNCH, '"101 mm"], to = ["50 mm", "101 mm"', '"98 mm"], to = ["50 mm", "98 mm"', "[[impactor]]", "impactor punch: reaches 0.002"),
+    ("a punch that is elsewhere at the start", PUNCH, "(1 - stretch)", "(2 - stretch)", "[[impactor]]", "at stretch 1 already"),
+    ("a punch that moves both ways", PUNCH, "displacement = [0, \"(1", "velocity = [0, 0]\ndisplacement = [0, \"(1", "displacement", "velocity, displacement"),
+    ("a punch of a speed in statics", PUNCH, 'displacement = [0, "(1 - stretch) * 10 mm"]', 'velocity = [0, "1 m/s"]', "velocity", "needs motion in time"),
+    ("a punch along a path", PUNCH, 'method = "dynamic-relaxation"', 'method = "newton"\ncontrol = "arc-length"', "[[impactor]]", 'expected control = "load"'),
+    ("a punch that is free in part", PUNCH, '[0, "(1 - stretch) * 10 mm"]', '["free", 0]', "displacement = [", 'has an entry "free"'),
+    ("a punch with mass", PUNCH, 'name = "punch"', 'name = "punch"\nmass = "1 kg"', "mass", "belongs to peridynamic models"),
+    ("an impactor of points that sticks", IMPACT, 'mass = "20 g"', 'mass = "20 g"\nsurface = "sticking"', "surface", 'belongs to the model "finite-elements"'),
+    ("an impactor of points that is displaced", IMPACT, "velocity = [0, 0, \"10 m/s * (1 - cos(2*pi*t/20us))\"]", "displacement = [0, 0, 0]", "displacement",
+     "expected velocity"),
+    ("an impactor of points in statics", PLAIN, "[solver]", '[[impactor]]\nname = "ball"\nsphere = { center = [0, "1 m"], radius = "1 mm" }\n\n[solver]',
+     "[[impactor]]", 'expected method = "verlet"'),
     ("titel", PLAIN, "title =", "titel =", "titel =", 'did you mean "title"?'),
     ("unknown key", PLAIN, 'horizon = "3 dx"', 'horizn = "3 dx"', "horizn", 'did you mean "horizon"?'),
     ("unknown table", PLAIN, "[solver]", "[slover]", "[slover]", 'did you mean "solver"?'),
@@ -171,6 +190,12 @@ MISTAKES = [
     ("a radius beyond 1", PMB, 'method = "verlet"', 'method = "generalised-alpha"\nstep = "1 us"\nspectral_radius = 1.1', "spectral_radius",
      "found 1.1"),
     ("a safety of slabs", SLABS, 'method = "space-time"', 'method = "space-time"\nsafety = 0.5', "safety", 'method = "verlet"'),
+    ("arc-length of relaxation", PLAIN, '"dynamic-relaxation"', '"dynamic-relaxation"\ncontrol = "arc-length"', "control", 'method = "newton"'),
+    ("steps of a path by loads", PLAIN, '"dynamic-relaxation"', '"newton"\nmax_steps = 5', "max_steps", 'control = "arc-length"'),
+    ("an unknown control", PLAIN, '"dynamic-relaxation"', '"newton"\ncontrol = "arc"', "control", "load, arc-length"),
+    ("arc-length without a tangent", BOND, '"dynamic-relaxation"', '"newton"\ncontrol = "arc-length"', "[solver]", "has no tangent"),
+    ("arc-length of bonds that break", replaced(STATIC_PMB, '"dynamic-relaxation"', '"newton"\ncontrol = "arc-length"'),
+     'law = "linear-elastic"', 'law = "linear-elastic"\ncritical_stretch = 0.1', "[solver]", "break"),
     ("contact in slabs", SLABS, "[solver]", "[contact]\n\n[solver]", "[contact]", 'method = "verlet"'),
     ("contact in statics", PLAIN, "[solver]", "[contact]\n\n[solver]", "[contact]", 'method = "verlet"'),
     ("contact of less than a spacing", IMPACT, "[contact]", '[contact]\ndistance = "0.5 dx"', "distance", "points could pass between others"),

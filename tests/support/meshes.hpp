@@ -114,12 +114,20 @@ class MshNumbers {
   std::string text_;
 };
 
-/// A mesh as a file of MSH 4.1: node n has the number 10 n + 7.
-inline std::string msh_text(const Mesh& mesh, bool binary) {
+/// Gmsh's number of a block's elements, of first or second order.
+inline int msh_type(const ElementBlock& block) {
   const std::map<ElementKind, int> types = {{ElementKind::point, 15},      {ElementKind::line, 1},
                                             {ElementKind::triangle, 2},    {ElementKind::quadrangle, 3},
                                             {ElementKind::tetrahedron, 4}, {ElementKind::hexahedron, 5},
                                             {ElementKind::prism, 6},       {ElementKind::pyramid, 7}};
+  if (block.further.empty()) return types.at(block.kind);
+  if (block.kind == ElementKind::line) return 8;
+  if (block.kind == ElementKind::triangle) return 9;
+  return block.further.size() == 4 * block.size() ? 16 : 10;  // quadrangles of eight and of nine nodes
+}
+
+/// A mesh as a file of MSH 4.1: node n has the number 10 n + 7.
+inline std::string msh_text(const Mesh& mesh, bool binary) {
   std::string text = binary ? std::string("$MeshFormat\n4.1 1 8\n\1\0\0\0\n$EndMeshFormat\n", 40)
                             : "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
   text += "$PhysicalNames\n" + std::to_string(mesh.groups.size()) + "\n";
@@ -160,12 +168,13 @@ inline std::string msh_text(const Mesh& mesh, bool binary) {
   for (const std::size_t n : {mesh.blocks.size(), elements, std::size_t{1}, elements}) element.count(n);
   for (const ElementBlock& block : mesh.blocks) {
     element.line();
-    for (const int n : {dimension_of(block.kind), block.entity, types.at(block.kind)}) element.integer(n);
+    for (const int n : {dimension_of(block.kind), block.entity, msh_type(block)}) element.integer(n);
     element.count(block.size());
     for (std::size_t n = 0; n < block.size(); ++n) {
       element.line();
       element.count(block.number[n]);
       for (const std::uint32_t c : block.corners(n)) element.count(10 * c + 7);
+      for (const std::uint32_t c : block.others(n)) element.count(10 * c + 7);
     }
   }
   return text + entity.section("Entities") + node.section("Nodes") + element.section("Elements");

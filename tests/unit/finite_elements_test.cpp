@@ -45,11 +45,15 @@ struct Way {
 };
 
 const std::vector<Way>& ways() {
-  static const std::vector<Way> all{
-      {"mooney_rivlin", Plane::strain, {}},       {"yeoh_cubic", Plane::strain, Dilatation::full},
-      {"ogden", Plane::strain, Dilatation::mean}, {"compressible_neo_hookean", Plane::strain, {}},
-      {"st_venant_kirchhoff", Plane::stress, {}}, {"mooney_rivlin", Plane::stress, {}},
-      {"neo_hookean", Plane::stress, {}, true},   {"linear_elastic", Plane::strain, {}}};
+  static const std::vector<Way> all{{"mooney_rivlin", Plane::strain, {}},
+                                    {"yeoh_cubic", Plane::strain, Dilatation::full},
+                                    {"ogden", Plane::strain, Dilatation::mean},
+                                    {"mooney_rivlin", Plane::strain, Dilatation::selective},
+                                    {"compressible_neo_hookean", Plane::strain, {}},
+                                    {"st_venant_kirchhoff", Plane::stress, {}},
+                                    {"mooney_rivlin", Plane::stress, {}},
+                                    {"neo_hookean", Plane::stress, {}, true},
+                                    {"linear_elastic", Plane::strain, {}}};
   return all;
 }
 
@@ -270,8 +274,12 @@ TEST(FiniteElements, RefuseWhatHasNoMeaning) {
   const Material rubber = law_cases().front().material(), solid = law_cases().back().compressible();
   EXPECT_THROW(elements_of(mesh, rubber, Plane::strain), InputError);
   EXPECT_THROW(elements_of(mesh, solid, Plane::strain, Dilatation::mean), InputError);
-  EXPECT_THROW(elements_of(mesh, law_cases().front().compressible(), Plane::stress, Dilatation::mean),
+  EXPECT_THROW(elements_of(mesh, solid, Plane::strain, Dilatation::selective), InputError);
+  EXPECT_THROW(elements_of(mesh, law_cases().front().compressible(), Plane::strain, Dilatation::linear),
                InputError);
+  for (const Dilatation dilatation : {Dilatation::mean, Dilatation::selective})
+    EXPECT_THROW(elements_of(mesh, law_cases().front().compressible(), Plane::stress, dilatation),
+                 InputError);
 }
 
 // ---- accuracy ----

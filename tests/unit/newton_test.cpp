@@ -4,9 +4,12 @@
 #include <omp.h>
 
 #include <cmath>
+#include <memory>
 
+#include "load/distributed_force.hpp"
 #include "peridynamics/lps.hpp"
 #include "solver/dynamic_relaxation.hpp"
+#include "support/finite_element_bodies.hpp"
 #include "support/pulled_point.hpp"
 #include "support/static_sheet.hpp"
 
@@ -47,6 +50,49 @@ TEST(Newton, TakesAStepThatIsWithinTheToleranceToo) {
   const State state = loose.solve({.targets = {1.4}, .increment = 0.05, .tolerance = 0.1});
   const State exact = tight.solve({.targets = {1.4}, .tolerance = 1e-10});
   EXPECT_LT(distance(state.u, exact.u), 1e-4 * largest(exact.u));  // measured 1.3e-5
+}
+
+/// A bar of rubber that a traction on its head bends: thin, so that next to no force goes with displacements.
+struct BentBar {
+  BentBar() {
+    for (const std::size_t node : model->mesh().nodes_on(2))
+      for (const std::size_t axis : {0U, 1U})
+        constraints.add({.slave = axis * model->points() + node,
+                         .terms = {{[](const Point&, double) { return 0.0; }, model->place(node),
+                                    static_cast<int>(axis), 1, 2}}});
+    std::vector<LoadShare> head;
+    for (const NodeShare& share : model->mesh().face_shares(3))
+      head.push_back({share.node, model->place(share.node), share.extent});
+    external.push_back(std::make_shared<DistributedForce>(
+        DistributedForce::Density{[](const Point&, double p) { return 1e-3 * (p - 1); }}, head,
+        model->points()));
+  }
+  State solve(double tolerance, double increment) {
+    return newton(*model, constraints,
+                  {.targets = {2}, .increment = increment, .tolerance = tolerance, .external = external},
+                  log);
+  }
+
+  std::unique_ptr<FiniteElements> model = elements_of(make_mesh(ElementShape::q4, {4, 40}, 1,
+                                                                [](const Point& x) {
+                                                                  return Point{2 * x[0], 20 * x[1], 0};
+                                                                }),
+                                                      unit_laws()[1].material(), Plane::stress);
+  Constraints constraints{model->dofs(), 3};
+  ExternalForces external;
+  StaticLog log;
+};
+
+// Quadratic to the end: no step is taken only to show how small it is, and none is missing. A residual of
+// 1e-9 is not the end yet: a thin bar bends by 1e-5 of its deflection with that.
+TEST(Newton, OfElementsEndsWhenTheStateIsFound) {
+  BentBar bar, tight;
+  const State state = bar.solve(1e-10, 0.1), exact = tight.solve(3e-11, 0.5);
+  EXPECT_GT(largest(exact.u), 2);  // a tenth of its length
+  EXPECT_LT(distance(state.u, exact.u), 1e-9 * largest(exact.u));
+  ASSERT_GT(bar.log.residuals.size(), 5U);
+  for (const std::vector<double>& r : bar.log.residuals)
+    EXPECT_LE(r.size(), 5U);  // 4 factorisations; 5 if the last one had to be within the tolerance itself
 }
 
 /// E = sqrt(1 + z^2) with z = u[1] - 4 u[0]^2: a groove along a parabola, from whose sides Newton's whole

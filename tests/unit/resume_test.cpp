@@ -16,6 +16,7 @@
 #include "peridynamics/correspondence.hpp"
 #include "peridynamics/lps.hpp"
 #include "peridynamics/pmb.hpp"
+#include "solver/arc_length.hpp"
 #include "solver/dynamic_relaxation.hpp"
 #include "solver/generalised_alpha.hpp"
 #include "solver/newton.hpp"
@@ -141,6 +142,13 @@ const std::vector<SolverCase>& solvers() {
          const auto solve = p.model->tangent_parts() > 0 ? newton : relax;
          return solve(*p.model, *p.constraints,
                       {.targets = {1.1, 1.25}, .increment = 0.03, .tolerance = 1e-4}, observer, from);
+       }},
+      {"ArcLength", false,
+       [](Problem& p, Observer& observer, const Snapshot* from) {
+         const LoadStepSettings loads{.targets = {1.1, 1.25}, .increment = 0.03, .tolerance = 1e-6};
+         if (p.model->tangent_parts() > 0 && !breaks(*p.model))
+           return follow_path(*p.model, *p.constraints, {loads}, observer, from);
+         return relax(*p.model, *p.constraints, loads, observer, from);
        }},
       {"Verlet", true,
        [](Problem& p, Observer& observer, const Snapshot* from) {

@@ -1,0 +1,35 @@
+// A quarter of a square plate of half width 20 mm with a hole of radius 1 mm, in quadrilaterals of eight nodes that grow with the
+// distance from the hole.
+r = 1; w = 20; n = 10; m = 18; growth = 1.2;
+Point(1) = {0, 0, 0};
+Point(2) = {r, 0, 0};
+Point(3) = {r * Sqrt(0.5), r * Sqrt(0.5), 0};
+Point(4) = {0, r, 0};
+Point(5) = {w, 0, 0};
+Point(6) = {w, w, 0};
+Point(7) = {0, w, 0};
+Circle(1) = {2, 1, 3};
+Circle(2) = {3, 1, 4};
+Line(3) = {2, 5};
+Line(4) = {3, 6};
+Line(5) = {4, 7};
+Line(6) = {5, 6};
+Line(7) = {6, 7};
+Curve Loop(1) = {3, 6, -4, -1};
+Curve Loop(2) = {4, 7, -5, -2};
+Plane Surface(1) = {1};
+Plane Surface(2) = {2};
+Transfinite Curve {1, 2, 6, 7} = n + 1;
+Transfinite Curve {3, 4, 5} = m + 1 Using Progression growth;
+Transfinite Surface {1} = {2, 5, 6, 3};
+Transfinite Surface {2} = {3, 6, 7, 4};
+Recombine Surface {1, 2};
+Physical Surface("plate") = {1, 2};
+Physical Curve("hole") = {1, 2};
+Physical Curve("axis of x") = {3};
+Physical Curve("axis of y") = {5};
+Physical Curve("pulled") = {6};
+Physical Point("notch") = {4};
+Physical Point("side of the hole") = {2};
+Mesh.ElementOrder = 2;
+Mesh.SecondOrderIncomplete = 1;
