@@ -93,12 +93,18 @@ double nodes_of(const GeometryInput& geometry) {
 /// The same of finite elements, by nested dissection: on a grid of n x n nodes 31/4 n^2 log2(n) numbers and
 /// 829/84 n^3 products (George 1973), in space of powers 4/3 and 2 of the number of nodes.
 Factors element_factors(const Case& input) {
-  if (input.solver.method != "newton") return {};
+  if (input.solver.method != "newton" && !input.solver.is_implicit_motion()) return {};
+  const bool complex = input.solver.method == "space-time";  // numbers twice as long, products of four
   constexpr double kFlopsPerSecond = 4e9, kNodesPerSecond = 2e5;
   const double nodes = nodes_of(input.geometry), d = input.geometry.dimension;
   const double numbers = d == 2 ? 31.0 / 8 * nodes * std::log2(nodes) : 8 * std::pow(nodes, 4.0 / 3);
   const double flops = d == 2 ? 10 * std::pow(nodes, 1.5) : 4 * nodes * nodes;
-  return {kNumber * d * d * numbers, d * d * d * flops / kFlopsPerSecond + nodes / kNodesPerSecond};
+  return {(complex ? 2 : 1) * kNumber * d * d * numbers,
+          (complex ? 4 : 1) * d * d * d * flops / kFlopsPerSecond + nodes / kNodesPerSecond};
+}
+
+Factors all_factors(const Case& input) {
+  return input.geometry.elements ? element_factors(input) : factors(input);
 }
 
 double elements_memory(const Case& input) {
@@ -261,7 +267,7 @@ TimeEstimate time_estimate(const Simulation& simulation) {
     constexpr double kIterations = 4;         // of a step, with two forces each
     constexpr double kStepsOfAMotion = 1000;  // if none is given
     estimate.unit = "iterations";
-    estimate.evaluation_s = factors(simulation.input).seconds / kIterations + 2 * estimate.evaluation_s;
+    estimate.evaluation_s = all_factors(simulation.input).seconds / kIterations + 2 * estimate.evaluation_s;
     estimate.evaluations =
         kIterations * std::ceil(solver.until / solver.step.value_or(solver.until / kStepsOfAMotion));
   } else if (simulation.parameter == Parameter::time) {
@@ -272,9 +278,7 @@ TimeEstimate time_estimate(const Simulation& simulation) {
   } else if (solver.method == "newton") {
     constexpr double kIterations = 3.5;  // of a load step
     estimate.unit = "iterations";
-    const Case& input = simulation.input;
-    estimate.evaluation_s = (input.geometry.elements ? element_factors(input) : factors(input)).seconds +
-                            3 * estimate.evaluation_s;
+    estimate.evaluation_s = all_factors(simulation.input).seconds + 3 * estimate.evaluation_s;
     estimate.evaluations = kIterations * load_steps(solver);
   } else {
     constexpr double kPerPointAlongSide = 3.5;  // waves must cross the body a few times in each load step

@@ -32,7 +32,7 @@ def mistakes(schema, value, path=""):
         if not condition:
             found.append(f"{path}: {text}")
 
-    types = {"string": str, "integer": int, "number": (int, float), "object": dict, "array": list}
+    types = {"string": str, "boolean": bool, "integer": int, "number": (int, float), "object": dict, "array": list}
     if "type" in schema:
         names = schema["type"] if isinstance(schema["type"], list) else [schema["type"]]
         if not isinstance(value, tuple(t for name in names for t in (types[name] if name == "number" else (types[name],)))):
