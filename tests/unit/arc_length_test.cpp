@@ -104,8 +104,9 @@ struct PathLog : Observer {
     if (progress.iteration == 0 || residuals.empty()) residuals.emplace_back();
     residuals.back().push_back(progress.residual);
   }
-  void reached(const State& state, const Constraints&, bool output) override {
+  void reached(const State& state, const Constraints& constraints, bool output) override {
     states.push_back(state);
+    pulls.push_back(constraints.reaction(0)[1]);
     if (output) outputs.push_back(state.parameter);
   }
   void remarked(const std::string& remark) override { remarks.push_back(remark); }
@@ -118,6 +119,7 @@ struct PathLog : Observer {
     return list;
   }
   std::vector<State> states;
+  std::vector<double> pulls;  // of load 0, along y (N)
   std::vector<double> outputs;
   std::vector<std::string> remarks;
   std::vector<std::vector<double>> residuals;
@@ -212,6 +214,23 @@ TEST(ArcLength, TellsWhereABranchLeaves) {
   EXPECT_NEAR(limits[0], 1 + truss.force_at(h * (1 - 1 / std::sqrt(3))) / unit, 1e-5);
   EXPECT_NE(log.remarks[0].find("unstable in 1 way"), std::string::npos) << log.remarks[0];
   EXPECT_NE(log.remarks[1].find("unstable in 2 ways"), std::string::npos) << log.remarks[1];
+}
+
+// To find the place of a branch the state before is looked at once more; observers see the forces of this
+// one.
+TEST(ArcLength, ShowsTheForcesOfEveryState) {
+  const double a = 0.5, h = 1.2, spring = 5;
+  Truss truss(a, h, spring);
+  Constraints constraints(3, 1);
+  constraints.add({.slave = 2, .terms = {{[](const Point&, double p) { return p - 1; }, {}, 1, 1, 0}}});
+  PathLog log;
+  follow_path(truss, constraints, settings_of({1.5}, 0.02, 1000), log);
+  const auto branches = log.stretches("branch leaves");
+  ASSERT_EQ(branches.size(), 1U);
+  const double w = h - std::sqrt(h * h - 2 * a * a);
+  EXPECT_NEAR(branches[0], 1 + w + truss.force_at(w) / spring, 1e-4);  // of second order in the step
+  for (std::size_t n = 0; n < log.states.size(); ++n)
+    EXPECT_NEAR(log.pulls[n], spring * (log.states[n].u[2] - log.states[n].u[1]), 1e-12);
 }
 
 // A small force to one side takes the paths apart: the load then leads along the side's one.
