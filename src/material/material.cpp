@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "material/principal.hpp"
+#include "material/sheet_tangent.hpp"
 #include "material/volume_energy.hpp"
 
 namespace riven {
@@ -265,13 +266,16 @@ bool relieve(const L& law, const std::optional<Volumetric>& volumetric, const Sm
   return std::abs(last_stress) < kAccepted;
 }
 
-/// Compressible sheet at that thickness; the tangent is that of space, condensed.
+/// Compressible sheet at that thickness; the tangent of a law that is none of the invariants is that of
+/// space, condensed.
 template <class L>
 double free_sheet(const L& law, const std::optional<Volumetric>& volumetric, const SmallStrain& moduli,
                   const Matrix2& f, Matrix2& stress, Tangent2* tangent) {
   Sheet sheet{f};
   if (!relieve(law, volumetric, moduli, sheet)) return kNotANumber;
-  if (tangent != nullptr) {
+  if constexpr (OfInvariants<L>) {
+    if (tangent != nullptr) *tangent = sheet_tangent(law, *volumetric, f, sheet.thickness());
+  } else if (tangent != nullptr) {
     Matrix3 whole;
     Tangent3 a;
     evaluate(law, volumetric, in_space(f, sheet.thickness()), whole, &a);

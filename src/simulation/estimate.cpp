@@ -152,6 +152,7 @@ double load_steps(const SolverInput& solver) {
 
 double history_rows(const Simulation& simulation) {
   const Case& input = simulation.input;
+  if (input.solver.control == "arc-length") return input.solver.max_steps;
   if (simulation.parameter == Parameter::stretch) return load_steps(input.solver);
   const double every = input.output.every.value_or(input.solver.until);
   return 1 + std::ceil(input.solver.until / input.output.history_every.value_or(every) - 1e-9);

@@ -19,7 +19,7 @@ constexpr long kMostIterations = 30;  // of a load step
 constexpr double kLeastShift = 1e-10, kFirstShift = 1e-4, kShiftFactor = 4, kLargestShift = 10;
 // A row without bonds gets this part of the largest bound.
 constexpr double kLeastBound = 1e-6;
-constexpr int kHalvings = 8;
+constexpr int kHalvings = 20;  // a stiff contact that begins needs so many
 // Steps are compared with the displacements, or with those of such a strain where there are next to none.
 constexpr double kLeastStrain = 1e-6;
 // A step overshoots if the force along it ends with more than this part of what it began with, turned round.

@@ -168,16 +168,17 @@ TEST(SpaceTime, KeepsTheEnergyLawToTheQuadrature) {
                                                {0.2, 3, 1.3e-7, 8},
                                                {0.2, 4, 6.6e-10, 8},
                                                {0.2, 6, 1e-12, 8},
-                                               {1, 2, 8.4e-3, 15},
-                                               {1, 3, 2.5e-4, 15},
-                                               {1, 4, 9.1e-6, 15},
-                                               {1, 6, 9.7e-9, 15}}) {
+                                               {1, 2, 8.4e-3, 18},
+                                               {1, 3, 2.5e-4, 18},
+                                               {1, 4, 9.1e-6, 18},
+                                               {1, 6, 9.7e-9, 18}}) {
     const Balance balance = chain_balance(SlabKind::single_field, row.points, row.h, 10);
     EXPECT_LT(balance.defect, 3 * row.defect) << row.h << ", " << row.points;
     if (row.defect > 1e-12) {
       EXPECT_GT(balance.defect, row.defect / 3) << row.h << ", " << row.points;
     }
-    EXPECT_LT(balance.iterations, row.iterations + 1.5) << row.h;  // measured 8.7 and 13.9
+    // Of the note 8 at h = 0.2 and 15 at 0.5, and none at 1.
+    EXPECT_LT(balance.iterations, row.iterations + 1.5) << row.h;
   }
 }
 
