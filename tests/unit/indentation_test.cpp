@@ -377,6 +377,51 @@ TEST(Indentation, ImplicitlyIsThatOfVerletAndKeepsTheBalance) {
           1e-3);  // measured 5e-3, 1.2e-4
 }
 
+// A plane that comes from a little above keeps the face's end where it was, by every method, if it sticks.
+TEST(Indentation, SticksByEveryMethod) {
+  const auto aside = [](bool sticking, const auto& solve) {
+    Turned body(0);
+    Observer nobody;
+    const auto plane = indenter_on(body.model->mesh(), {.shape = RigidPlane{{0, 0.02, 0}, {0, -1, 0}},
+                                                        .way = in_and_out(0.2),
+                                                        .stiffness = 200,
+                                                        .sticking = sticking});
+    const State state = solve(body, plane, nobody);
+    double largest = 0;
+    for (const LoadShare& share : plane->surface())
+      largest = std::max(largest, std::abs(state.u[share.point]));
+    return largest;
+  };
+  const auto verlet = [](Turned& body, std::shared_ptr<Indenter> indenter, Observer& nobody) {
+    auto settings = motion<VelocityVerletSettings>(std::move(indenter), 1e-3);
+    settings.until = 1;
+    return march(*body.model, *body.constraints, settings, nobody);
+  };
+  const auto slabs = [](Turned& body, std::shared_ptr<Indenter> indenter, Observer& nobody) {
+    auto settings = motion<SpaceTimeSettings>(std::move(indenter), 0.01);
+    settings.until = 1;
+    return march_slabs(*body.model, *body.constraints, settings, nobody);
+  };
+  const auto alpha = [](Turned& body, std::shared_ptr<Indenter> indenter, Observer& nobody) {
+    auto settings = motion<GeneralisedAlphaSettings>(std::move(indenter), 0.01);
+    settings.until = 1;
+    return generalised_alpha(*body.model, *body.constraints, settings, nobody);
+  };
+  const auto statics = [](Turned& body, std::shared_ptr<Indenter> indenter, Observer& nobody) {
+    LoadStepSettings settings{.targets = {1}, .start = 0, .increment = 0.02, .tolerance = 1e-9};
+    settings.external = {std::move(indenter)};
+    return newton(*body.model, *body.constraints, settings, nobody);
+  };
+  const auto expect = [&](const auto& solve, const char* name) {
+    EXPECT_LT(aside(true, solve), 0.01) << name;
+    EXPECT_GT(aside(false, solve), 0.05) << name;
+  };
+  expect(verlet, "verlet");
+  expect(slabs, "slabs");
+  expect(alpha, "alpha");
+  expect(statics, "newton");
+}
+
 // ---- going on after a stop ----
 
 /// Takes a snapshot at the n-th safe point.
