@@ -174,11 +174,19 @@ Point Indenter::force_on(std::span<const double> u, double parameter) const {
 }
 
 /// Nodes take energy from the indenter's motion and from its store: what comes from outside is what moves it
-/// against the force on it.
+/// against the force on it. Where a node comes or goes, its depth taken as linear in between tells when.
 double Indenter::work(std::span<const double> u_before, double before, std::span<const double> u,
                       double parameter) const {
-  const Vector3d force = 0.5 * (vector(force_on(u_before, before)) + vector(force_on(u, parameter)));
-  return -force.dot(vector(settings_.way(parameter)) - vector(settings_.way(before)));
+  const Point from = settings_.way(before), to = settings_.way(parameter);
+  Vector3d force = Vector3d::Zero();
+  for (std::size_t n = 0; n < surface_.size(); ++n) {
+    const Vector3d first = place(n, u_before, from), last = place(n, u, to);
+    const double a = reach_of(settings_, first).depth.value, b = reach_of(settings_, last).depth.value;
+    if (std::max(a, b) <= 0) continue;
+    const double inside = std::min(a, b) >= 0 ? 1 : std::max(a, b) / std::abs(a - b);  // of the way
+    force += 0.5 * inside * (push(n, first).slope + push(n, last).slope);
+  }
+  return -force.dot(vector(to) - vector(from));
 }
 
 double Indenter::held(std::span<const double> u, double parameter) const {

@@ -54,7 +54,7 @@ class Indenter final : public ExternalForce {
   void add(std::span<const double> u, std::span<const double> v, double parameter,
            std::span<double> force) override;
   void tangent(std::span<const double> u, double parameter, TangentBlocks& to) const override;
-  /// The work of what moves the indenter, by the trapezoidal rule.
+  /// The work of what moves the indenter, by the trapezoidal rule while nodes are in touch.
   [[nodiscard]] double work(std::span<const double> u_before, double before, std::span<const double> u,
                             double parameter) const override;
   /// The energy of the contact, and what nodes that stuck held when they came off.

@@ -143,6 +143,24 @@ TEST(Indenter, WorksAsMuchAsNodesAndStoreGet) {
   });
 }
 
+// A node at rest that a plane meets or leaves within a step has all of the work: or a run that begins with a
+// touch would miss most of its energy.
+TEST(Indenter, WorksFromTheTouchOn) {
+  Indenter plane({"punch", RigidPlane{{0, 0.3, 0}, {0, -1, 0}},
+                  [](double t) {
+                    return Point{0, -t, 0};
+                  },
+                  7},
+                 {{0, {}, 1}}, 1, 2);
+  const std::vector<double> u(2, 0.0);
+  for (const double depth : {1e-6, 0.1, 2.0}) {
+    EXPECT_NEAR(plane.work(u, 0.1, u, 0.3 + depth), 3.5 * depth * depth, 1e-14);
+    EXPECT_NEAR(plane.work(u, 0.3 + depth, u, 0.1), -3.5 * depth * depth, 1e-14);
+    EXPECT_NEAR(plane.work(u, 0.4, u, 0.4 + depth), plane.held(u, 0.4 + depth) - plane.held(u, 0.4), 1e-14);
+  }
+  EXPECT_EQ(plane.work(u, 0.1, u, 0.2), 0);
+}
+
 // Nodes stick where `advance` found them, it changes no force, and pulls them nowhere; frictionless ones
 // slide.
 TEST(Indenter, HoldsNodesThatStick) {
