@@ -31,6 +31,7 @@ struct Stretches {
 
 Stretches asked_for(const Case& input) {
   if (input.solver.in_time()) return {};
+  if (input.solver.control == "arc-length") return {.why = "0.5 to 2, since that of a path is no stretch"};
   const auto [low, high] = std::minmax_element(input.solver.stretch.begin(), input.solver.stretch.end());
   Stretches stretches{std::min(*low, 1.0), std::max(*high, 1.0), {}};
   stretches.why = fmt::format("{:g} to {:g} by solver.stretch", stretches.low, stretches.high);

@@ -168,17 +168,18 @@ TEST(SpaceTime, KeepsTheEnergyLawToTheQuadrature) {
                                                {0.2, 3, 1.3e-7, 8},
                                                {0.2, 4, 6.6e-10, 8},
                                                {0.2, 6, 1e-12, 8},
-                                               {1, 2, 8.4e-3, 18},
-                                               {1, 3, 2.5e-4, 18},
-                                               {1, 4, 9.1e-6, 18},
-                                               {1, 6, 9.7e-9, 18}}) {
+                                               {1, 2, 8.4e-3, 15},
+                                               {1, 3, 2.5e-4, 15},
+                                               {1, 4, 9.1e-6, 15},
+                                               {1, 6, 9.7e-9, 15}}) {
     const Balance balance = chain_balance(SlabKind::single_field, row.points, row.h, 10);
     EXPECT_LT(balance.defect, 3 * row.defect) << row.h << ", " << row.points;
     if (row.defect > 1e-12) {
       EXPECT_GT(balance.defect, row.defect / 3) << row.h << ", " << row.points;
     }
-    // Of the note 8 at h = 0.2 and 15 at 0.5, and none at 1.
-    EXPECT_LT(balance.iterations, row.iterations + 1.5) << row.h;
+    // The note makes an operator per slab and takes 8 at h = 0.2, 15 at 0.5. One that is kept until it leaves
+    // 0.3 of the residual takes half as many more, of far fewer factors.
+    EXPECT_LT(balance.iterations, 1.5 * row.iterations) << row.h;
   }
 }
 
@@ -343,9 +344,10 @@ TEST(SpaceTime, ShortensStepsForALoadThatComesSuddenly) {
   EXPECT_NEAR(state.u[0], 0.01 * (1000 - 60 + 6 * std::sin(10.0)), 5e-3);
 }
 
+// An operator that leaves half of the residual in an iteration would take 37 for eleven digits.
 TEST(SpaceTime, SolvesSlabsThatNeedTheExactTangents) {
   for (const SlabKind scheme : kSchemes)
-    for (const double h : {0.5, 2.0}) EXPECT_LT(chain_balance(scheme, 3, h, 10).iterations, 15) << h;
+    for (const double h : {0.5, 2.0}) EXPECT_LT(chain_balance(scheme, 3, h, 10).iterations, 20) << h;
 }
 
 TEST(SpaceTime, SaysWhereItCannotGoOn) {

@@ -115,7 +115,7 @@ TEST_P(SpaceTimeWaves, KeepTheEnergyBalance) {
     // Of the single-field scheme the quadrature's error is left: measured 1e-9 for the rubber, 1e-11 for
     // others. Of the two-field one the nonlinearity over a jump: measured 2e-5 of a taken 2.7e-3, and 2e-7.
     EXPECT_LT(std::abs(state.energy.error()), scheme == SlabKind::single_field ? 1e-8 : 0.02 * taken);
-    EXPECT_LT(state.iterations, 5 * 20);  // measured 67 to 93
+    EXPECT_LT(state.iterations, 10 * 20);  // at 0.3 of the residual per iteration ten digits take 19
   }
 }
 
