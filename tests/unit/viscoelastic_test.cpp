@@ -110,6 +110,16 @@ TEST(Viscoelastic, HeldStretchRelaxesExactlyInAnyStep) {
   EXPECT_NEAR(point.pull(1.5, 1e6), 1.40741, 6e-6);
 }
 
+TEST(Viscoelastic, EvenRatesOfSmallStrainAreExactInAnyStep) {
+  // dH/dt + H/tau = dD/dt over one step of an even rate: H = D tau/t (1 - e^(-t/tau)). E = 6 (C10 + C01).
+  for (const double t : {0.1, 1.0, 5.0, 30.0}) {
+    Point point(rubber({{0.5, 1}}));
+    constexpr double kStrain = 1e-6;
+    const double expected = 9 * kStrain * (0.5 + 0.5 * (1 - std::exp(-t)) / t);
+    EXPECT_NEAR(point.pull(1 + kStrain, t) / expected, 1, 1e-5) << t;  // of the strain's size, and rounding
+  }
+}
+
 TEST(Viscoelastic, SineSettlesToALoop) {
   // Same section: strain 0.1 sin(2 pi t), a share of 0.2 that stays. The section's energy of the loop,
   // 0.035862, is that of a polygon: two integrations of our own agree on 0.1 % more.
