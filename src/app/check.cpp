@@ -194,7 +194,7 @@ void print_model(const Simulation& simulation) {
 }
 
 void print_cost(const Simulation& simulation) {
-  if (simulation.parameter == Parameter::time) {
+  if (simulation.parameter == Parameter::time && simulation.input.solver.inertia) {
     const std::vector<double> rest(simulation.model->dofs(), 0.0);
     fmt::print("# stable step of explicit methods: {:.4g} s at rest\n",
                stable_step(*simulation.model, *simulation.constraints, rest, simulation.external));

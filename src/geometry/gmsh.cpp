@@ -156,7 +156,8 @@ class GmshReader {
       const int dimension = in_.integer("the dimension of an entity");
       const int entity = in_.integer("the number of an entity");
       const GmshType type = read_type(dimension);
-      ElementBlock block{.kind = type.kind, .entity = entity, .groups = {}, .node = {}, .number = {}, .further = {}};
+      ElementBlock block{
+          .kind = type.kind, .entity = entity, .groups = {}, .node = {}, .number = {}, .further = {}};
       for (std::size_t n = in_.count("a number of elements"); n > 0; --n) read_element(type, block);
       found += block.size();
       mesh_.blocks.push_back(std::move(block));

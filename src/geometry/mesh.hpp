@@ -32,10 +32,10 @@ enum class ElementKind : std::uint8_t {
 /// in the order of Gmsh, which is that of VTK: base, then top.
 struct ElementBlock {
   ElementKind kind = ElementKind::point;
-  int entity = 0;                   // its number among those of its dimension
-  std::vector<std::size_t> groups;  // of the mesh, to which they belong
-  std::vector<std::uint32_t> node;  // corners_of(kind) nodes for each element
-  std::vector<std::size_t> number;  // of each element in its file
+  int entity = 0;                        // its number among those of its dimension
+  std::vector<std::size_t> groups;       // of the mesh, to which they belong
+  std::vector<std::uint32_t> node;       // corners_of(kind) nodes for each element
+  std::vector<std::size_t> number;       // of each element in its file
   std::vector<std::uint32_t> further{};  // of second order: the other nodes, as many for each element
 
   [[nodiscard]] std::size_t size() const { return number.size(); }

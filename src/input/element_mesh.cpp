@@ -37,30 +37,33 @@ void check_kinds(const Mesh& mesh, const std::string& file) {
     if (element_of(block).empty())
       throw InputError(
           Location{file},
-          fmt::format("the mesh has {}s of {} order; expected triangles, tetrahedra or hexahedra of first order "
-                      "(in Gmsh Mesh.ElementOrder = 1), or quadrangles of first or second order",
-                      name_of(block.kind), second ? "second" : "first"));
+          fmt::format(
+              "the mesh has {}s of {} order; expected triangles, tetrahedra or hexahedra of first order "
+              "(in Gmsh Mesh.ElementOrder = 1), or quadrangles of first or second order",
+              name_of(block.kind), second ? "second" : "first"));
     kinds[fmt::format("{}s{}", name_of(block.kind), second ? " of second order" : "")] += block.size();
   }
   if (kinds.size() == 1) return;
   std::string found;
   for (const auto& [kind, count] : kinds)
     found += fmt::format("{}{} {}", found.empty() ? "" : " and ", count, kind);
-  throw InputError(Location{file},
-                   fmt::format("the mesh has {}; expected elements of one kind (in Gmsh Mesh.RecombineAll = 1 "
-                               "with Mesh.SubdivisionAlgorithm = 1 makes quadrangles alone, Mesh.RecombineAll "
-                               "= 0 triangles)",
-                               found));
+  throw InputError(
+      Location{file},
+      fmt::format("the mesh has {}; expected elements of one kind (in Gmsh Mesh.RecombineAll = 1 "
+                  "with Mesh.SubdivisionAlgorithm = 1 makes quadrangles alone, Mesh.RecombineAll "
+                  "= 0 triangles)",
+                  found));
 }
 
 void check_groups(const Mesh& mesh, const std::string& file) {
   for (const MeshGroup& a : mesh.groups)
     for (const MeshGroup& b : mesh.groups)
       if (a.name == b.name && a.dimension < b.dimension)
-        throw InputError(Location{file},
-                         fmt::format("two physical groups, of dimensions {} and {}, are called \"{}\"; expected "
-                                     "names of their own",
-                                     a.dimension, b.dimension, a.name));
+        throw InputError(
+            Location{file},
+            fmt::format("two physical groups, of dimensions {} and {}, are called \"{}\"; expected "
+                        "names of their own",
+                        a.dimension, b.dimension, a.name));
 }
 
 std::vector<std::string> groups(const GeometryInput& geometry, bool of_edges) {

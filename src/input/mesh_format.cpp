@@ -127,21 +127,23 @@ Format describe_mesh(GeometryInput& geometry, const Case& c) {
       .doc =
           "A mesh in Gmsh's format MSH 4.1 (ASCII or binary), in a plane z = const or in space. Where its "
           "boundary covers a whole side of the box around it, that side is an edge for loads and probes.",
-      .keys = {Key{"file", kind::Text{&form->file}, "MSH file, relative to the case file."}.required(),
-               Key{"unit", kind::Text{&form->unit}, "Of its coordinates, such as `\"mm\"`."}.otherwise(
-                   "\"m\""),
-               Key{"as", kind::Text{&form->as, {"points", "elements"}},
-                   "`points`: each element, of any kind, is a point at its centroid, with its volume; `dx` is "
-                   "their mean spacing, as of `points`; physical groups become sets by `group` in `[set.NAME]`. "
-                   "`elements`: finite elements, of one kind: triangles, quadrangles of first or second order, "
-                   "tetrahedra, hexahedra. Physical groups have their names in loads, probes and materials: those of "
-                   "lines (in space: faces) as edges, others as sets."}
-                   .otherwise("\"points\""),
-               Key{"thickness", kind::Quantity{&form->thickness, dimension::length, positive},
-                   "Two dimensions only: the body's thickness."}},
+      .keys =
+          {Key{"file", kind::Text{&form->file}, "MSH file, relative to the case file."}.required(),
+           Key{"unit", kind::Text{&form->unit}, "Of its coordinates, such as `\"mm\"`."}.otherwise("\"m\""),
+           Key{"as", kind::Text{&form->as, {"points", "elements"}},
+               "`points`: each element, of any kind, is a point at its centroid, with its volume; `dx` is "
+               "their mean spacing, as of `points`; physical groups become sets by `group` in `[set.NAME]`. "
+               "`elements`: finite elements, of one kind: triangles, quadrangles of first or second order, "
+               "tetrahedra, hexahedra. Physical groups have their names in loads, probes and materials: "
+               "those of "
+               "lines (in space: faces) as edges, others as sets."}
+               .otherwise("\"points\""),
+           Key{"thickness", kind::Quantity{&form->thickness, dimension::length, positive},
+               "Two dimensions only: the body's thickness."}},
       .finish = [form, &geometry, &c](const Check& check) {
         if (form->as == "elements")
-          return read_element_mesh(geometry, {.file = form->file, .unit = form->unit}, form->thickness, c, check);
+          return read_element_mesh(geometry, {.file = form->file, .unit = form->unit}, form->thickness, c,
+                                   check);
         geometry.points = PointsInput{.file = form->file, .unit = form->unit};
         read(geometry, form->thickness, c, check);
       }};

@@ -87,10 +87,10 @@ class PointMaker {
     const ElementMeasure found = measure(mesh_, block, n);
     const auto fail = [&](const char* what) {
       const Point& x = mesh_.node[block.corners(n)[0]];
-      throw InputError(at_element(list_.file, block, n),
-                       fmt::format("this {} is {}, at ({:.4g}, {:.4g}, {:.4g}) m; expected one with a positive {}",
-                                   name_of(block.kind), what, x[0], x[1], x[2],
-                                   list_.dimension == 2 ? "area" : "volume"));
+      throw InputError(
+          at_element(list_.file, block, n),
+          fmt::format("this {} is {}, at ({:.4g}, {:.4g}, {:.4g}) m; expected one with a positive {}",
+                      name_of(block.kind), what, x[0], x[1], x[2], list_.dimension == 2 ? "area" : "volume"));
     };
     if (!std::isfinite(found.size) || found.size == 0) fail("flat");
     if (!found.one_sided) fail("folded");

@@ -236,7 +236,8 @@ Format describe_geometry(Case& c) {
   GeometryInput& geometry = c.geometry;
   const auto is_box = [&geometry] { return std::holds_alternative<Box>(geometry.shape); };
   const auto has_points = [&geometry] { return geometry.points && !geometry.points->is_mesh(); };
-  const auto has_mesh = [&geometry] { return is_element_mesh(geometry) || (geometry.points && geometry.points->is_mesh());
+  const auto has_mesh = [&geometry] {
+    return is_element_mesh(geometry) || (geometry.points && geometry.points->is_mesh());
   };
   const auto is_lattice_box = [&geometry, is_box] {
     return is_box() && !geometry.points && !geometry.surface && !is_arch(geometry) &&

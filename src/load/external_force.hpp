@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -33,8 +34,15 @@ class ExternalForce {
   virtual void advance(std::span<const double> /*u*/, double /*parameter*/) {}
   virtual void save(Snapshot&) const {}
   virtual void restore(const Snapshot&) {}
+  /// Whether it remembers its way.
+  [[nodiscard]] virtual bool has_memory() const { return false; }
 };
 
 using ExternalForces = std::vector<std::shared_ptr<ExternalForce>>;
+
+/// Whether one of them does.
+[[nodiscard]] inline bool have_memory(const ExternalForces& forces) {
+  return std::any_of(forces.begin(), forces.end(), [](const auto& force) { return force->has_memory(); });
+}
 
 }  // namespace riven

@@ -21,8 +21,8 @@ Matrix3d cross_matrix(const Vector3d& v) {
 
 }  // namespace
 
-FollowerPressure::FollowerPressure(LoadFunction pressure, std::vector<PressedSide> sides, std::vector<Point> place,
-                                   int dimension, double thickness)
+FollowerPressure::FollowerPressure(LoadFunction pressure, std::vector<PressedSide> sides,
+                                   std::vector<Point> place, int dimension, double thickness)
     : pressure_(std::move(pressure)),
       sides_(std::move(sides)),
       place_(std::move(place)),
@@ -93,8 +93,9 @@ void FollowerPressure::tangent(std::span<const double> u, double parameter, Tang
         Matrix3d change = -point.slope[0][b] * cross_matrix(s);
         if (dimension_ == 3) change += point.slope[1][b] * cross_matrix(r);
         for (std::size_t a = 0; a < nodes; ++a)
-          k.block(static_cast<Eigen::Index>(a) * dimension_, static_cast<Eigen::Index>(b) * dimension_, dimension_,
-                  dimension_) += p * point.value[a] * change.topLeftCorner(dimension_, dimension_);
+          k.block(static_cast<Eigen::Index>(a) * dimension_, static_cast<Eigen::Index>(b) * dimension_,
+                  dimension_, dimension_) +=
+              p * point.value[a] * change.topLeftCorner(dimension_, dimension_);
       }
     });
     const Eigen::MatrixXd symmetric = 0.5 * (k + k.transpose());

@@ -18,8 +18,8 @@ struct PressedSide {
 class FollowerPressure final : public ExternalForce {
  public:
   /// `place`: undeformed positions of all nodes (m); entry `axis` of a node is axis * nodes + node.
-  FollowerPressure(LoadFunction pressure, std::vector<PressedSide> sides, std::vector<Point> place, int dimension,
-                   double thickness);
+  FollowerPressure(LoadFunction pressure, std::vector<PressedSide> sides, std::vector<Point> place,
+                   int dimension, double thickness);
 
   void add(std::span<const double> u, std::span<const double> v, double parameter,
            std::span<double> force) override;
@@ -40,7 +40,8 @@ class FollowerPressure final : public ExternalForce {
                       const Visit& visit) const;
   /// Calls visit(entry, force) with the forces of all sides; a pressure for each node of each side.
   template <class Visit>
-  void for_each_force(std::span<const double> u, const std::vector<double>& pressure, const Visit& visit) const;
+  void for_each_force(std::span<const double> u, const std::vector<double>& pressure,
+                      const Visit& visit) const;
   /// Of all nodes of all sides.
   [[nodiscard]] std::vector<double> pressures(double parameter) const;
 

@@ -12,6 +12,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+constexpr double kMayTouch = 10;  // spacings
+constexpr double kBound = 4;
 constexpr double kTouch = 1e-9;  // spacings: an indenter that lies on a face at the start touches it
 
 Vector3d vector(const Point& p) {
@@ -205,10 +207,10 @@ void Indenter::stiffness_bound(std::span<const double> u, double parameter, std:
   const Point moved = settings_.way(parameter);
   for (std::size_t n = 0; n < surface_.size(); ++n) {
     const Local depth = reach_of(settings_, place(n, u, moved)).depth;
-    if (depth.value < -settings_.spacing) continue;
+    if (depth.value < -kMayTouch * settings_.spacing) continue;
     Matrix3d tangent = depth.slope * depth.slope.transpose();
     if (settings_.sticking) tangent = Matrix3d::Identity();
-    const double size = settings_.stiffness * surface_[n].extent;
+    const double size = kBound * settings_.stiffness * surface_[n].extent;
     for (std::size_t d = 0; d < dimension_; ++d)
       bound[d * points_ + surface_[n].point] +=
           size * tangent.row(static_cast<Eigen::Index>(d)).cwiseAbs().sum();

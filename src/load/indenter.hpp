@@ -59,11 +59,14 @@ class Indenter final : public ExternalForce {
                             double parameter) const override;
   /// The energy of the contact, and what nodes that stuck held when they came off.
   [[nodiscard]] double held(std::span<const double> u, double parameter) const override;
-  /// Nodes less than a spacing away count, since they may come into contact before it is asked again.
+  /// Nodes less than ten spacings away count, since they may come into contact before it is asked again, four
+  /// times: an explicit step is half as long, and a contact that begins is seen twice as often.
   void stiffness_bound(std::span<const double> u, double parameter, std::span<double> bound) const override;
   void advance(std::span<const double> u, double parameter) override;
   void save(Snapshot& to) const override { each_member(*this, to.saving()); }
   void restore(const Snapshot& from) override { each_member(*this, from.restoring()); }
+
+  [[nodiscard]] bool has_memory() const override { return settings_.sticking; }
 
   [[nodiscard]] const IndenterSettings& settings() const { return settings_; }
   [[nodiscard]] const std::vector<LoadShare>& surface() const { return surface_; }

@@ -19,7 +19,8 @@ std::optional<std::size_t> Simulation::edge(const std::string& name) const {
   for (std::size_t group = 0; group < mesh->group.size(); ++group)
     if (mesh->group[group].name == name) return mesh->face.size() + group;
   // A group of the mesh may have the name of a face.
-  const bool is_set = std::any_of(sets.begin(), sets.end(), [&](const PointSet& s) { return s.name == name; });
+  const bool is_set =
+      std::any_of(sets.begin(), sets.end(), [&](const PointSet& s) { return s.name == name; });
   return is_set ? std::nullopt : face(name);
 }
 

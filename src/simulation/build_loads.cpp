@@ -89,14 +89,15 @@ class LoadBuilder {
     if (!pressed_.insert(face).second)
       throw InputError(on.at, fmt::format("load: the edge \"{}\" has two pressures; expected one", on.text));
     if (face >= mesh_->face.size() && mesh_->group[face - mesh_->face.size()].inside)
-      throw InputError(on.at, fmt::format("load: the edge \"{}\" lies inside the body, and a pressure acts on its "
-                                          "boundary; expected lines or faces with elements on one side only",
-                                          on.text));
+      throw InputError(on.at,
+                       fmt::format("load: the edge \"{}\" lies inside the body, and a pressure acts on its "
+                                   "boundary; expected lines or faces with elements on one side only",
+                                   on.text));
     std::vector<PressedSide> sides;
     for (const Side& side : mesh_->sides(face)) sides.push_back({side.node});
-    const auto force = std::make_shared<FollowerPressure>(make_function(*load.pressure, simulation_.parameter),
-                                                          std::move(sides), mesh_->node, mesh_->dimension(),
-                                                          mesh_->thickness);
+    const auto force = std::make_shared<FollowerPressure>(
+        make_function(*load.pressure, simulation_.parameter), std::move(sides), mesh_->node,
+        mesh_->dimension(), mesh_->thickness);
     simulation_.applied.push_back({face, on.text, nullptr, force});
     simulation_.external.push_back(force);
   }
@@ -177,7 +178,8 @@ class LoadBuilder {
   /// section force, or of all that prescribe it alike.
   void share_out(Constraint& constraint) const {
     const auto is_across = [this](const PrescribedTerm& term) {
-      return term.load < mesh_->edges() && mesh_->axis_across(term.load) == static_cast<std::size_t>(term.axis);
+      return term.load < mesh_->edges() &&
+             mesh_->axis_across(term.load) == static_cast<std::size_t>(term.axis);
     };
     const auto across = std::count_if(constraint.terms.begin(), constraint.terms.end(), is_across);
     const double share = 1.0 / static_cast<double>(across > 0 ? across : std::ssize(constraint.terms));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "base/text.hpp"
@@ -115,9 +116,17 @@ double elements_memory(const Case& input) {
     elements = 0;
     for (const ElementBlock& block : mesh->blocks) elements += static_cast<double>(block.size());
   }
+  std::size_t branches = 0;  // of materials that relax, whose points keep three states
+  for (const MaterialInput& material : input.materials)
+    branches = std::max(branches, material.relaxation.size());
+  const std::map<std::string, double> points{{"q4", 4}, {"q8", 9}, {"h8", 8}};
+  const auto found = points.find(input.geometry.element);
+  const double remembered = branches == 0 ? 0
+                                          : 3 * kNumber * (found == points.end() ? 1 : found->second) *
+                                                static_cast<double>(13 + 6 * branches);
   const bool sixths = input.geometry.element == "t4" && !input.geometry.elements->mesh;
   return kProgram + nodes_of(input.geometry) * kNumber * (kSolver * input.geometry.dimension + kOutput + 30) +
-         elements * kElement * (sixths ? 3 : 1) + element_factors(input).bytes;
+         elements * (kElement + remembered) * (sixths ? 3 : 1) + element_factors(input).bytes;
 }
 
 /// The smallest spacing (m), with horizon in proportion, whose run fits; two digits, rounded up.

@@ -116,6 +116,21 @@ void check_step(const Simulation& simulation) {
 void check_solver(const Simulation& simulation) {
   const Case& input = simulation.input;
   const SolverInput& solver = input.solver;
+  if (solver.control == "arc-length" && !input.interfaces.empty())
+    throw InputError(
+        input.interfaces.front().at,
+        "interface: its bonds break, and a path of equilibria that can be followed to and fro has "
+        "none that do; expected none, or solver.control = \"load\"");
+  if (!solver.inertia && simulation.mesh == nullptr)
+    throw InputError(solver.at,
+                     fmt::format("solver.inertia: the model \"{}\" remembers nothing that would take "
+                                 "time without it; expected true, or method = \"newton\"",
+                                 input.model.kind));
+  if (solver.is_implicit_motion() && solver.start == "equilibrium" && !input.initials.empty())
+    throw InputError(
+        input.initials.front().at,
+        "initial: the run starts in the equilibrium under the loads of time 0, whatever the body's "
+        "state before; expected none, or solver.start = \"initial\" (with inertia)");
   if (solver.control == "arc-length")
     for (const MaterialInput& material : input.materials)
       if (material.breaks())
@@ -133,9 +148,8 @@ void check_solver(const Simulation& simulation) {
 
 /// Elements that nothing holds move at once, or nowhere: statics has no answer.
 void check_supports(const Simulation& simulation) {
-  if (simulation.mesh == nullptr) return;
   const SolverInput& solver = simulation.input.solver;
-  if (solver.in_time() && solver.inertia) return;
+  if (simulation.mesh == nullptr || (solver.in_time() && solver.inertia)) return;
   if (const auto motion = free_motion(simulation))
     throw InputError(
         simulation.input.solver.at,
@@ -423,6 +437,10 @@ std::vector<std::string> warnings(const Simulation& simulation) {
     list.emplace_back(
         "the law \"linear-elastic\" takes rotations for strain: where they reach 1 % its stresses are wrong; "
         "\"compressible-neo-hookean\" has the same constants and no such limit");
+  if (simulation.parameter == Parameter::stretch && simulation.model->has_memory())
+    list.emplace_back(
+        "statics knows no time: materials that relax give the answer to a jump; method = \"space-time\" with "
+        "inertia = false has their times");
   if (!simulation.model->conservative())
     list.push_back(
         fmt::format("the model \"{}\" has no energy and holds for the loading \"{}\" only: it is kept for "

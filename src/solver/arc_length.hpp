@@ -24,7 +24,7 @@ struct ArcLengthSettings {
 /// tangent, which need not be definite: the path may be unstable. The direction goes on as it came, so no
 /// determinant is asked which way leads ahead.
 ///
-/// Steps are halved that do not converge or turn by more than some 35 degrees. The numbers of negative
+/// Steps are halved that do not converge or turn by more than some 37 degrees. The numbers of negative
 /// eigenvalues of the tangent tell where the path loses stability, and where others leave it: observers are
 /// told of such points. The path ends at the last target, reached for the first time, or after `max_steps`.
 class ArcLength {

@@ -57,9 +57,10 @@ class GeneralisedAlpha final : public TimeStepMethod {
   }
 
   std::optional<std::string> step(const State& from, double end) override;
-  void lead_model_to(double s) override {
+  long lead_model_to(double s) override {
     model_.go_back();
     model_.go_on(s * h_);
+    return 0;
   }
   void displacement(double s, std::span<double> u) const override;
   void velocity(double s, std::span<double> v) const override;
@@ -90,9 +91,10 @@ class GeneralisedAlpha final : public TimeStepMethod {
   std::optional<Breakdown> evaluate();
   std::optional<std::string> solve();
   void constrain();
-  /// A model's memory is not saved with the factors: with one they are of their own step.
+  /// What is remembered of the way is not saved with the factors: then they are of their own step.
   [[nodiscard]] bool is_frozen() const {
-    return system_ && !model_.has_memory() && std::abs(frozen_step_ - h_) <= kRounding * h_;
+    return system_ && !model_.has_memory() && !have_memory(external_) &&
+           std::abs(frozen_step_ - h_) <= kRounding * h_;
   }
   [[nodiscard]] bool freeze();
   [[nodiscard]] bool factor();
@@ -172,7 +174,7 @@ std::optional<Breakdown> GeneralisedAlpha::evaluate() {
     if (mass_[i] == 0) end_acceleration_[i] = 0;
   }
   std::fill(force_.begin(), force_.end(), 0.0);  // models leave out points without bonds
-  lead_model_to(1);
+  static_cast<void>(lead_model_to(1));
   if (auto breakdown = model_.internal_force(state_, force_)) return breakdown;
   std::fill(applied_.begin(), applied_.end(), 0.0);
   if (!external_.empty()) {
@@ -225,7 +227,7 @@ bool GeneralisedAlpha::freeze() {
   frozen_time_ = end_;
   frozen_step_ = h_;
   ++evaluations_;
-  lead_model_to(1);
+  static_cast<void>(lead_model_to(1));
   if (factor()) return true;
   system_.reset();
   frozen_at_.clear();

@@ -79,7 +79,7 @@ class SpaceTime final : public TimeStepMethod {
     return solve();
   }
 
-  void lead_model_to(double s) override { evaluations_ += static_cast<long>(slab_.lead_model_to_time(s)); }
+  long lead_model_to(double s) override { return static_cast<long>(slab_.lead_model_to_time(s)); }
   void displacement(double s, std::span<double> u) const override { slab_.displacement(s, u); }
   void velocity(double s, std::span<double> v) const override { slab_.velocity(s, v); }
   [[nodiscard]] double work(double s) const override { return slab_.work(s); }
@@ -140,7 +140,7 @@ class SpaceTime final : public TimeStepMethod {
   std::vector<double> unknown_mass_;          // of the tangent's rows (kg)
   std::vector<double> frozen_at_;             // state of the operator's tangent; empty: there is none
   double frozen_step_ = 0, frozen_time_ = 0;  // s
-  // Its values, where the model's memory of that time is gone when a run is resumed.
+  // Its values, where what was remembered at that time is gone when a run is resumed.
   std::vector<double> frozen_tangent_;
   double least_force_ = 0;                           // N
   double first_residual_ = 0;                        // of the slab (N)
@@ -214,7 +214,7 @@ void SpaceTime::freeze() {
   }
   frozen_step_ = slab_.length();
   fresh_ = true;
-  if (model_.has_memory()) frozen_tangent_ = tangent_->matrix().value;
+  if (model_.has_memory() || have_memory(external_)) frozen_tangent_ = tangent_->matrix().value;
   factor();
 }
 

@@ -87,12 +87,16 @@ void TimeSteps::begin() {
   constraints_.set_parameter(0);
   constraints_.apply(state_.u);
   if (settings_.rest_tolerance) {
+    for (const auto& external : settings_.external) external->advance(state_.u, 0);
     bring_to_rest(model_, constraints_, settings_.external, *settings_.rest_tolerance, state_);
     std::fill(state_.v.begin(), state_.v.end(), 0.0);
   }
   if (const auto breakdown = evaluate(state_)) fail(state_, text(*breakdown));
   for (const auto& external : settings_.external) external->advance(state_.u, 0);
-  break_bonds();
+  if (break_bonds() && settings_.rest_tolerance)
+    throw SolverFailure(
+        "bonds would break under the loads of time 0 already, before the motion starts; try smaller loads at "
+        "time 0");
   method_->restart(state_, internal_, force_);
   wanted_ = settings_.step.value_or(
       settings_.inertia ? kFirstStep * stable_step(model_, constraints_, state_.u, settings_.external)
@@ -134,7 +138,7 @@ std::optional<std::string> TimeSteps::attempt(State& end) {
   method_->velocity(1, end.v);
   end.energy.external_work += method_->work(1);
   end.energy.damped += method_->dissipated();
-  method_->lead_model_to(1);
+  end.evaluations += method_->lead_model_to(1);
   if (const auto breakdown = evaluate(end)) return text(*breakdown);
   if (const auto breakdown = watchdog_.inspect(constraints_, end.u, force_, end.v)) return text(*breakdown);
   balance(end);
@@ -194,7 +198,7 @@ void TimeSteps::show(const State& from, const State& end, const Constraints::Pre
     constraints_.set(start);
     constraints_.set_parameter(time);
     constraints_.apply(state.u);
-    method_->lead_model_to(s);
+    state.evaluations += method_->lead_model_to(s);
     if (const auto breakdown = evaluate(state)) fail(state, text(*breakdown));
     balance(state);
     const bool output = outputs_.due(time);
@@ -205,7 +209,7 @@ void TimeSteps::show(const State& from, const State& end, const Constraints::Pre
   constraints_.set(at_end);
   if (!inside) return;
   State again = end;  // the forces there are what goes on
-  method_->lead_model_to(1);
+  static_cast<void>(method_->lead_model_to(1));
   static_cast<void>(evaluate(again));
 }
 

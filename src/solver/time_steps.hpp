@@ -43,8 +43,9 @@ class TimeStepMethod {
   /// The last step has been taken; forces as for `restart`.
   virtual void accept(std::span<const double> internal, std::span<const double> force) = 0;
 
-  /// Takes the model's memory to a part s of the last step, for the forces there.
-  virtual void lead_model_to(double s) = 0;
+  /// Takes the model's memory to a part s of the last step, for the forces there. Returns how many forces
+  /// that took.
+  virtual long lead_model_to(double s) = 0;
   /// In the last step, at a part s of it in [0, 1].
   virtual void displacement(double s, std::span<double> u) const = 0;
   virtual void velocity(double s, std::span<double> v) const = 0;

@@ -252,6 +252,11 @@ class FiniteElements(ProgramTest):
                  "expected displacements that hold it, or inertia = true")]:
             path = self.write("case.toml", replaced(RELAXING, old, new))
             self.assertIn(message, self.refused("check", path))
+        said = self.refused("check", self.write("initial.toml", RELAXING + '\n[[initial]]\nvelocity = ["1 m/s", 0]\n'))
+        self.assertIn("initial: the run starts in the equilibrium under the loads of time 0", said)
+        still = replaced(PLAIN, 'method = "dynamic-relaxation"\nstretch = [1.2, 1.4]', 'method = "space-time"\ninertia = false\nuntil = "1 s"')
+        still = replaced(still, '["(stretch - 1)*x", "(stretch - 1)*y"]', '["t/1 s*x", "t/1 s*y"]')
+        self.assertIn('the model "membrane" remembers nothing', self.refused("check", self.write("still.toml", still)))
         light = replaced(RELAXING, 'density = "1100 kg/m^3"\n', "")
         self.command("check", self.write("light.toml", light))
         said = self.refused("check", self.write("moving.toml", replaced(light, "inertia = false\n", "")))

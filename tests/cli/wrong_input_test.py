@@ -196,6 +196,9 @@ MISTAKES = [
     ("arc-length without a tangent", BOND, '"dynamic-relaxation"', '"newton"\ncontrol = "arc-length"', "[solver]", "has no tangent"),
     ("arc-length of bonds that break", replaced(STATIC_PMB, '"dynamic-relaxation"', '"newton"\ncontrol = "arc-length"'),
      'law = "linear-elastic"', 'law = "linear-elastic"\ncritical_stretch = 0.1', "[solver]", "break"),
+    ("arc-length of an interface that breaks", replaced(STATIC_PMB, '"dynamic-relaxation"', '"newton"\ncontrol = "arc-length"'),
+     "[solver]", '[set.half]\nwhere = "x > 0 m"\n\n[material.other]\non = "half"\nlaw = "linear-elastic"\nyoungs_modulus = "1 MPa"\n'
+     'density = "1000 kg/m^3"\n\n[[interface]]\nbetween = ["rubber", "other"]\ncritical_stretch = 0.1\n\n[solver]', "[[interface]]", "its bonds break"),
     ("contact in slabs", SLABS, "[solver]", "[contact]\n\n[solver]", "[contact]", 'method = "verlet"'),
     ("contact in statics", PLAIN, "[solver]", "[contact]\n\n[solver]", "[contact]", 'method = "verlet"'),
     ("contact of less than a spacing", IMPACT, "[contact]", '[contact]\ndistance = "0.5 dx"', "distance", "points could pass between others"),

@@ -28,7 +28,7 @@ inline Mesh as_mesh(const MeshBody& body) {
     block.number.push_back(1000 + e);
   }
   mesh.blocks.push_back(block);
-  const ElementKind of_sides = dimension == 2                    ? ElementKind::line
+  const ElementKind of_sides = dimension == 2                   ? ElementKind::line
                                : body.shape == ElementShape::t4 ? ElementKind::triangle
                                                                 : ElementKind::quadrangle;
   std::size_t number = 1;
