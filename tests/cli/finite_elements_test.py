@@ -288,6 +288,19 @@ class FiniteElements(ProgramTest):
         self.assertAlmostEqual(last[at["force_y"]] / last[at["lid_force_y"]], 1, delta=1e-7)
         self.assertAlmostEqual(last[at["lid_force_x"]], 0, delta=1e-9 * force)
 
+    def test_fast_and_stiff_impacts_are_met_by_short_steps(self):
+        text = replaced(SHEET, 'law = "neo-hookean"', 'law = "neo-hookean"\nbulk_modulus = "50 MPa"')
+        text = replaced(text, 'on = ["left", "right", "bottom", "top"]\ndisplacement = ["(stretch - 1)*x", "(stretch - 1)*y"]',
+                        'on = "bottom"\ndisplacement = [0, 0]')
+        text = replaced(replaced(text, 'on = "right"', 'on = "bottom"'), "elements = [4, 3]", "elements = [40, 20]")
+        for speed, stiffness, until in [(20, 100, "1.5 ms"), (2, 100, "13 ms")]:
+            moving = replaced(text, 'method = "newton"\ntolerance = 1e-9\nstretch = [1.2, 1.4]', f'method = "verlet"\nuntil = "{until}"')
+            moving += ('\n[[impactor]]\nname = "lid"\nplane = { point = [0, "0.125 m"], normal = [0, -1] }\n'
+                       f'velocity = [0, "-{speed} m/s"]\nstiffness = {stiffness}\n')
+            self.command("run", self.write("lid.toml", moving), "-o", f"lid-{speed}")
+            energy = json.loads((self.top / f"lid-{speed}/summary.json").read_text())["energy"]
+            self.assertLess(abs(energy["balance_error"]), 0.1)  # beyond it a run is ended
+
     def test_free_motions_are_named(self):
         free = replaced(SHEET, 'on = ["left", "right", "bottom", "top"]', "on = {}")
         for on, values, motion in [
