@@ -10,14 +10,10 @@
 
 namespace riven::testing {
 
-/// The sum of a tangent's blocks, those of each half of its parts apart.
-inline Eigen::MatrixXd assembled(const Model& model, const std::vector<double>& u) {
-  const auto size = static_cast<Eigen::Index>(model.dofs());
+/// The sum of blocks, of states of so many entries.
+inline Eigen::MatrixXd sum_of(const TangentBlocks& blocks, std::size_t entries) {
+  const auto size = static_cast<Eigen::Index>(entries);
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(size, size);
-  TangentBlocks blocks;
-  const std::size_t half = model.tangent_parts() / 2;
-  model.tangent(u, 0, half, blocks);
-  model.tangent(u, half, model.tangent_parts(), blocks);
   std::size_t at = 0;
   for (std::size_t b = 0; b + 1 < blocks.begin.size(); ++b)
     for (std::size_t r = blocks.begin[b]; r < blocks.begin[b + 1]; ++r)
@@ -26,6 +22,15 @@ inline Eigen::MatrixXd assembled(const Model& model, const std::vector<double>& 
             blocks.values[at++];
   EXPECT_EQ(at, blocks.values.size());
   return k;
+}
+
+/// The tangent of a model, those of each half of its parts apart.
+inline Eigen::MatrixXd assembled(const Model& model, const std::vector<double>& u) {
+  TangentBlocks blocks;
+  const std::size_t half = model.tangent_parts() / 2;
+  model.tangent(u, 0, half, blocks);
+  model.tangent(u, half, model.tangent_parts(), blocks);
+  return sum_of(blocks, model.dofs());
 }
 
 /// Holds the tangent of a state to the change of the force along a direction, and to its symmetry. `step`: of

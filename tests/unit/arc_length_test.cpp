@@ -15,6 +15,7 @@
 #include "support/loads.hpp"
 #include "support/pulled_point.hpp"
 #include "support/random.hpp"
+#include "support/stopped_run.hpp"
 
 namespace riven::testing {
 namespace {
@@ -357,18 +358,7 @@ TEST(ArcLength, FindsTheForcesOfDisplacementControl) {
   EXPECT_LT(std::abs(state.energy.error()), 1e-3);
 }
 
-struct Stopped {};
-
-/// Stops a run at a safe point.
-struct Stopper : PathLog {
-  void safe_point(const std::function<Snapshot()>& take) override {
-    if (points++ != stop_at) return;
-    snapshot = take();
-    throw Stopped();
-  }
-  long stop_at = -1, points = 0;
-  Snapshot snapshot;
-};
+using Stopper = StopsAt<PathLog>;
 
 TEST(ArcLength, ResumesToTheSameBits) {
   const auto run = [](Stopper& observer, const Snapshot* from) {

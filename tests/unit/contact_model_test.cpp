@@ -8,6 +8,7 @@
 #include "solver/velocity_verlet.hpp"
 #include "support/contact_bodies.hpp"
 #include "support/model_properties.hpp"
+#include "support/stopped_run.hpp"
 
 namespace riven::testing {
 namespace {
@@ -247,18 +248,7 @@ TEST(ContactModel, APlaneThatIsPushedDoesWork) {
   EXPECT_NEAR(impulse, momentum_x, 1e-12 * momentum_x);
 }
 
-struct Stopped {};
-
-/// Stops at a safe point, with a snapshot.
-struct Stop : Watch {
-  void safe_point(const std::function<Snapshot()>& take) override {
-    if (points++ != at) return;
-    snapshot = take();
-    throw Stopped();
-  }
-  long at = -1, points = 0;
-  Snapshot snapshot;
-};
+using Stop = StopsAt<Watch>;
 
 TEST(ContactModel, GoesOnFromASnapshotWithTheSameBitsOnAnyNumberOfThreads) {
   // Halves of a sheet that meet and break, with a disc and a wall.
@@ -292,7 +282,7 @@ TEST(ContactModel, GoesOnFromASnapshotWithTheSameBitsOnAnyNumberOfThreads) {
     State state;
     std::optional<Snapshot> from;
     for (long stop = random.integer(1, static_cast<int>(whole.points) - 1);; stop += random.integer(1, 40)) {
-      parts.at = stop;
+      parts.stop_at = stop;
       try {
         state = run(parts, from ? &*from : nullptr);
         break;

@@ -42,16 +42,7 @@ VectorXd force_of(FollowerPressure& load, const std::vector<double>& u, double p
 Eigen::MatrixXd tangent_of(const FollowerPressure& load, const std::vector<double>& u, double parameter = 1) {
   TangentBlocks blocks;
   load.tangent(u, parameter, blocks);
-  Eigen::MatrixXd k =
-      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(u.size()), static_cast<Eigen::Index>(u.size()));
-  std::size_t at = 0;
-  for (std::size_t b = 0; b + 1 < blocks.begin.size(); ++b)
-    for (std::size_t r = blocks.begin[b]; r < blocks.begin[b + 1]; ++r)
-      for (std::size_t c = blocks.begin[b]; c < blocks.begin[b + 1]; ++c)
-        k(static_cast<Eigen::Index>(blocks.dofs[r]), static_cast<Eigen::Index>(blocks.dofs[c])) +=
-            blocks.values[at++];
-  EXPECT_EQ(at, blocks.values.size());
-  return k;
+  return sum_of(blocks, u.size());
 }
 
 VectorXd difference(FollowerPressure& load, const std::vector<double>& u,

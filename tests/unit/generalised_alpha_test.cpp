@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "support/spring_chain.hpp"
+#include "support/stopped_run.hpp"
 #include "support/time_dependent_force.hpp"
 
 namespace riven::testing {
@@ -141,17 +142,7 @@ TEST(GeneralisedAlpha, FactorsALinearMotionOnce) {
 
 // Factors of an earlier step leave other roundings than new ones would.
 TEST(GeneralisedAlpha, GoesOnWithTheFactorsItHad) {
-  struct Stopped {};
-  struct Watch : Observer {
-    void safe_point(const std::function<Snapshot()>& take) override {
-      if (++steps != stop_at) return;
-      snapshot = take();
-      throw Stopped();
-    }
-    long stop_at = 0, steps = 0;
-    Snapshot snapshot;
-  };
-  const auto run = [](Watch& watch, const Snapshot* from) {
+  const auto run = [](StopsAt<>& watch, const Snapshot* from) {
     CountingChain model({1, 2, 1, 0.5, 1}, neo_hookean_spring(10), true);
     Constraints constraints(5, 1);
     GeneralisedAlphaSettings settings = settings_for(0.8, 0.02, 60);
@@ -160,12 +151,12 @@ TEST(GeneralisedAlpha, GoesOnWithTheFactorsItHad) {
     const State state = generalised_alpha(model, constraints, settings, watch, from);
     return std::pair(state, model.tangents);
   };
-  Watch whole;
+  StopsAt<> whole;
   const auto [expected, tangents] = run(whole, nullptr);
   EXPECT_LT(tangents, 30);  // of 60 steps
   for (const long stop : {1L, 7L, 29L, 30L, 58L}) {
-    Watch first, second;
-    first.stop_at = stop;
+    StopsAt<> first, second;
+    first.stop_at = stop - 1;
     EXPECT_THROW(static_cast<void>(run(first, nullptr)), Stopped);
     const State state = run(second, &first.snapshot).first;
     EXPECT_EQ(state.u, expected.u) << stop;

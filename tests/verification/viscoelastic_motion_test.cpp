@@ -16,6 +16,7 @@
 #include "solver/space_time.hpp"
 #include "solver/velocity_verlet.hpp"
 #include "support/differences.hpp"
+#include "support/stopped_run.hpp"
 
 namespace riven::testing {
 namespace {
@@ -218,17 +219,6 @@ TEST(ViscoelasticRest, IsTheLimitOfSlowMotion) {
   EXPECT_GT(fast / slow, 8);
 }
 
-struct Stopped {};
-struct Watch : Observer {
-  void safe_point(const std::function<Snapshot()>& take) override {
-    if (points++ != stop_at) return;
-    snapshot = take();
-    throw Stopped();
-  }
-  long stop_at = -1, points = 0;
-  Snapshot snapshot;
-};
-
 TEST(ViscoelasticResuming, ChangesNoBit) {
   using Run = std::function<State(DrivenBlock&, Observer&, const Snapshot*)>;
   const std::vector<Run> runs = {
@@ -253,7 +243,7 @@ TEST(ViscoelasticResuming, ChangesNoBit) {
     DrivenBlock whole(path);
     Observer nobody;
     const State expected = runs[n](whole, nobody, nullptr);
-    Watch watch;
+    StopsAt<> watch;
     watch.stop_at = 7;
     DrivenBlock stopped(path);
     EXPECT_THROW(runs[n](stopped, watch, nullptr), Stopped);
