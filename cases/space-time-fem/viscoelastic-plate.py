@@ -5,8 +5,8 @@ S = J U' C^-1 + J^(-2/3) DEV[int gamma(t - s) dD(s)], D = DEV[2 dW/dCbar], gamma
 by the midpoint rule over the changes of D, the lateral stretch without lateral stress by bisection. It shares no
 formula of the update with the program: what it prints stands as reference in the cases viscoelastic-plate-*.
 
-    tools/references/viscoelastic_point.py sine 0.1 0.8 12 1000      amplitude, share, seconds, steps a second
-    tools/references/viscoelastic_point.py rate 10 0.5 0.05 40000    rate (1/s), share, seconds, steps a second
+    cases/space-time-fem/viscoelastic-plate.py sine 0.1 0.8 12 1000      amplitude, share, seconds, steps a second
+    cases/space-time-fem/viscoelastic-plate.py rate 10 0.5 0.05 40000    rate (1/s), share, seconds, steps a second
 """
 import math
 import sys
