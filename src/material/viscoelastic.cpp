@@ -56,7 +56,7 @@ void add_frozen(const Matrix3& x, const Matrix3& f, Response& to) {
   to.energy += 0.5 * a * xc;
   to.stress += a * (fx - xc / 3 * g);
   const auto G = flat<3>(g), FX = flat<3>(fx);
-  for (int i = 0; i < 3; ++i) to.tangent.block<3, 3>(3 * i, 3 * i) += a * x;
+  for (Eigen::Index i = 0; i < 3; ++i) to.tangent.block<3, 3>(3 * i, 3 * i) += a * x;
   to.tangent += a * (2.0 / 9 * xc * G * G.transpose() - 2.0 / 3 * (FX * G.transpose() + G * FX.transpose()) -
                      xc / 3 * derivative_of_inverse_transpose<3>(g));
 }
@@ -68,7 +68,7 @@ void add_frozen(const Matrix3& x, const Matrix2& f, PlaneResponse& to) {
   to.energy += 0.5 * ((fx.array() * f.array()).sum() + across);
   to.stress += fx - across * g;
   const auto G = flat<2>(g);
-  for (int i = 0; i < 2; ++i) to.tangent.block<2, 2>(2 * i, 2 * i) += in_plane;
+  for (Eigen::Index i = 0; i < 2; ++i) to.tangent.block<2, 2>(2 * i, 2 * i) += in_plane;
   to.tangent += across * (2 * G * G.transpose() - derivative_of_inverse_transpose<2>(g));
 }
 

@@ -415,8 +415,10 @@ void check_before_run(const Simulation& simulation, const Probes& probes) {
   }
 }
 
-std::vector<std::string> warnings(const Simulation& simulation) {
-  std::vector<std::string> list;
+namespace {
+
+/// Of the model and the mesh.
+void warn_of_model(const Simulation& simulation, std::vector<std::string>& list) {
   const Body& body = *simulation.body;
   const double ratio = body.horizon / body.spacing;
   if (ratio < 2.9 && body.dimension > 1 && simulation.mesh == nullptr)
@@ -448,6 +450,27 @@ std::vector<std::string> warnings(const Simulation& simulation) {
                     simulation.input.model.kind, simulation.input.model.loading));
   if (const auto& elements = simulation.input.geometry.elements; elements && elements->mesh)
     for (std::string& odd : oddities(*elements->mesh)) list.push_back(std::move(odd));
+}
+
+void warn_of_inclusions(const Body& body, std::vector<std::string>& list) {
+  for (const Shape& inclusion : body.defects.inclusions) {
+    bool near = false;
+    for (std::size_t face = 0; face < 4; ++face) {
+      Point edge = std::visit([](const auto& shape) { return shape.center; }, inclusion);
+      edge[face / 2] = body.faces[face];
+      near = near || signed_distance(inclusion, edge) < body.horizon;
+    }
+    if (near)
+      list.emplace_back(
+          "an inclusion is nearer than a horizon to an edge: the strip between is too thin for this lattice");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> warnings(const Simulation& simulation) {
+  std::vector<std::string> list;
+  warn_of_model(simulation, list);
   if (simulation.input.loads.empty() && simulation.input.initials.empty() &&
       simulation.input.impactors.empty())
     list.emplace_back("there is no load: nothing will move");
@@ -467,17 +490,7 @@ std::vector<std::string> warnings(const Simulation& simulation) {
   }
   const std::vector<std::string> unstable = stability_warnings(simulation.input);
   list.insert(list.end(), unstable.begin(), unstable.end());
-  for (const Shape& inclusion : body.defects.inclusions) {
-    bool near = false;
-    for (std::size_t face = 0; face < 4; ++face) {
-      Point edge = std::visit([](const auto& shape) { return shape.center; }, inclusion);
-      edge[face / 2] = body.faces[face];
-      near = near || signed_distance(inclusion, edge) < body.horizon;
-    }
-    if (near)
-      list.emplace_back(
-          "an inclusion is nearer than a horizon to an edge: the strip between is too thin for this lattice");
-  }
+  warn_of_inclusions(*simulation.body, list);
   return list;
 }
 

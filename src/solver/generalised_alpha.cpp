@@ -206,7 +206,6 @@ std::optional<std::string> GeneralisedAlpha::solve() {
     ++iterations_;
     const bool fresh = stale;
     if (stale && !freeze()) return "the tangent of the step is not positive definite";
-    stale = false;
     system_->solve(residual_, direction);
     for (double& entry : direction) entry /= 1 - alpha_f_;
     if (residual_norm_ <= tolerance_ * scale() &&

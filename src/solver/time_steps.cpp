@@ -126,7 +126,7 @@ void TimeSteps::take_step() {
 
 /// The next step, all of it or not at all.
 std::optional<std::string> TimeSteps::attempt(State& end) {
-  const auto failure = method_->step(state_, leg_.next());
+  auto failure = method_->step(state_, leg_.next());
   state_.evaluations += method_->evaluations();
   state_.iterations += method_->iterations();
   end.evaluations = state_.evaluations;
