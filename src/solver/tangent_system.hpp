@@ -13,7 +13,6 @@ class TangentSystem {
                 std::span<const double> mass = {});
 
   /// Sums the tangent of a state, that of the last force evaluation.
-  void assemble(std::span<const double> u) { tangent_.assemble(u); }
   void assemble(std::span<const double> u, const ExternalForces& external, double parameter) {
     tangent_.assemble(u, external, parameter);
   }

@@ -58,7 +58,7 @@ struct Problem {
 TEST(TangentSystem, IsTheConstrainedTangent) {
   Problem p;
   TangentSystem system(p.membrane, p.constraints, p.u);
-  system.assemble(p.u);
+  system.assemble(p.u, {}, 1);
   const std::vector<double> diagonal(p.membrane.dofs(), 3.0);
   const double shift = 0.2;
   ASSERT_TRUE(system.factor(shift, diagonal));
@@ -81,7 +81,7 @@ TEST(TangentSystem, IsTheConstrainedTangent) {
 TEST(TangentSystem, ForgetsTheShift) {
   Problem p;
   TangentSystem system(p.membrane, p.constraints, p.u);
-  system.assemble(p.u);
+  system.assemble(p.u, {}, 1);
   const std::vector<double> diagonal(p.membrane.dofs(), 1.0);
   std::vector<double> once(p.membrane.dofs()), again(p.membrane.dofs());
   ASSERT_TRUE(system.factor(0.1, diagonal));
@@ -98,7 +98,7 @@ TEST(TangentSystem, HasTheSameBitsOnAnyNumberOfThreads) {
     omp_set_num_threads(threads);
     Problem p;
     TangentSystem system(p.membrane, p.constraints, p.u);
-    system.assemble(p.u);
+    system.assemble(p.u, {}, 1);
     ASSERT_TRUE(system.factor(1e-3, std::vector<double>(p.membrane.dofs(), 1.0)));
     system.solve(p.force, results.emplace_back(p.membrane.dofs()));
   }
@@ -117,7 +117,7 @@ TEST(TangentSystem, HasTheSameBitsEveryTime) {
     for (const std::size_t i : membrane.body().points) force[i] = std::sin(static_cast<double>(i));
     TangentSystem system(membrane, free, rest);
     static_cast<void>(force_of(membrane, rest));
-    system.assemble(rest);
+    system.assemble(rest, {}, 1);
     ASSERT_TRUE(system.factor(1e-3, std::vector<double>(membrane.dofs(), 1.0)));
     system.solve(force, results.emplace_back(membrane.dofs()));
   }
